@@ -194,7 +194,7 @@ pub struct HostDeath {
     pub angular_braking: AngularAcceleration,
 }
 
-/// Everything the safety core knows about the robot; `S` scanners.
+/// Everything the safety core knows about the robot; room for `S` scanners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config<const S: usize> {
     /// The robot's outline.
@@ -209,8 +209,8 @@ pub struct Config<const S: usize> {
     pub tolerances: Tolerances,
     /// Critical zone.
     pub zone: ZoneMargins,
-    /// Laser scanners.
-    pub scanners: [Scanner; S],
+    /// Laser scanners; at least one.
+    pub scanners: [Option<Scanner>; S],
     /// Memory rules.
     pub memory: MemoryRules,
     /// Largest speed of anything that moves (assumption A-OBSTACLE); zero: a static world.
