@@ -1,0 +1,8 @@
+//! Scenarios that can hurt a guarded robot, and the judges that say whether they did.
+//!
+//! A scenario file describes a world, a robot, a drive and what goes wrong. The engine runs it
+//! with the guard and without (the *naked twin*, which must touch); contacts are judged by exact
+//! geometry at every dynamics step, and monitors watch every tick. Nothing here shares code with
+//! the kernel's geometry: the kernel is only ever called through its public door.
+
+pub mod result;
