@@ -1,0 +1,4 @@
+//! The shipped files parse to the pinned figures; every rule refuses what it should.
+
+mod refusals;
+mod shipped;
