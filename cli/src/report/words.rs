@@ -1,0 +1,81 @@
+//! The same words everywhere: terminal, report and certificate.
+
+use crate::picture::Style;
+use haltline_scenarios::result::{CaseResult, RunResult};
+
+/// A snake-case word of the decision as people read it.
+#[must_use]
+pub fn reason(word: &str) -> String {
+    word.replace('_', " ")
+}
+
+/// How the path looks under a decision.
+#[must_use]
+pub fn path_style(decision: &str) -> Style {
+    match decision {
+        "slow" => Style::PathSlow,
+        "brake" => Style::PathBrake,
+        "protective_stop" | "emergency_stop" => Style::PathStop,
+        "naked" => Style::PathNaked,
+        _ => Style::PathPass,
+    }
+}
+
+/// What became of the guarded run, in a few words.
+#[must_use]
+pub fn outcome(case: &CaseResult) -> String {
+    let run = &case.guarded;
+    let contacts = run.moving_contacts();
+    let end = if contacts > 0 {
+        format!("touched something while moving ({contacts} times)")
+    } else if run.reached {
+        format!("reached the goal in {:.1} s", run.time_s)
+    } else if run.at_rest {
+        format!("at rest after {:.1} s", run.time_s)
+    } else {
+        format!("still moving after {:.1} s", run.time_s)
+    };
+    match nearest(run) {
+        Some(gap) => format!("{end}, nearest {gap}"),
+        None => end,
+    }
+}
+
+/// Least clearance of a run in words.
+#[must_use]
+pub fn nearest(run: &RunResult) -> Option<String> {
+    run.min_clearance_m.map(metres)
+}
+
+/// A length for people: millimetres below one metre.
+#[must_use]
+pub fn metres(value_m: f64) -> String {
+    if value_m.abs() < 0.9995 {
+        format!("{:.0} mm", value_m * 1e3)
+    } else {
+        format!("{value_m:.2} m")
+    }
+}
+
+/// `1 run`, `2 runs`.
+#[must_use]
+pub fn count(n: usize, noun: &str) -> String {
+    if n == 1 {
+        format!("1 {noun}")
+    } else {
+        format!("{n} {noun}s")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_and_counts_read_well() {
+        assert_eq!(metres(0.0314), "31 mm");
+        assert_eq!(metres(1.5), "1.50 m");
+        assert_eq!(count(1, "run"), "1 run");
+        assert_eq!(count(0, "run"), "0 runs");
+    }
+}
