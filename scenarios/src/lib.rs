@@ -5,4 +5,9 @@
 //! geometry at every dynamics step, and monitors watch every tick. Nothing here shares code with
 //! the kernel's geometry: the kernel is only ever called through its public door.
 
+pub mod file;
+pub mod math;
+pub mod raycast;
 pub mod result;
+pub mod sweep;
+pub mod world;

@@ -1,0 +1,176 @@
+//! Combinations that no single key can refuse.
+
+use core::ops::Range;
+
+use super::fault::{FaultEntry, FaultKind};
+use super::{Motion, ProposerKind, Scenario, SweepAxis};
+
+/// Where and what: the caller adds the file.
+pub(super) type Complaint = (Option<Range<usize>>, String);
+
+/// Everything that does not fit together.
+pub(super) fn check(scenario: &Scenario) -> Result<(), Complaint> {
+    check_proposer(scenario)?;
+    check_naked(scenario)?;
+    for fault in &scenario.fault {
+        check_fault(fault.get_ref()).map_err(|message| (Some(fault.span()), message))?;
+    }
+    for motion in motions(scenario) {
+        check_motion(motion.get_ref()).map_err(|message| (Some(motion.span()), message))?;
+    }
+    for axis in &scenario.sweep {
+        check_axis(axis.get_ref()).map_err(|message| (Some(axis.span()), message))?;
+    }
+    if let Some(latency) = scenario.drive.latency_s {
+        let steps = latency.get() * 100.0;
+        if (steps - libm::round(steps)).abs() > 1e-9 {
+            let message = format!(
+                "drive.latency_s = {} is no whole number of dynamics steps; write a multiple of 0.01",
+                latency.get()
+            );
+            return Err((None, message));
+        }
+    }
+    check_expect(scenario)
+}
+
+fn check_expect(scenario: &Scenario) -> Result<(), Complaint> {
+    let expect = &scenario.expect;
+    if let Some(stopped) = &expect.stopped_before {
+        if stopped.clearance_m.is_none() && stopped.x_m.is_none() && stopped.y_m.is_none() {
+            let message =
+                "stopped_before says nothing; write clearance_m, x_m or y_m into it".to_owned();
+            return Err((None, message));
+        }
+    }
+    let says_something = expect.reached.is_some()
+        || expect.stopped_before.is_some()
+        || expect.blocked.is_some()
+        || !expect.reasons.is_empty()
+        || expect.stop_within_s.is_some();
+    if !says_something {
+        let message = "[expect] asks for nothing; write reached, stopped_before, blocked, reasons \
+                       or stop_within_s";
+        return Err((None, message.to_owned()));
+    }
+    if expect.reached == Some(true) && scenario.goal.is_none() {
+        return Err((
+            None,
+            "reached = true without a goal; write a [goal] table".to_owned(),
+        ));
+    }
+    Ok(())
+}
+
+fn check_proposer(scenario: &Scenario) -> Result<(), Complaint> {
+    let proposer = scenario.proposer.get_ref();
+    let complaint = match proposer.kind {
+        ProposerKind::Reckless if scenario.goal.is_none() => {
+            "the reckless proposer needs somewhere to go; write a [goal] table"
+        }
+        ProposerKind::Reckless if proposer.speed_mps.is_none() => {
+            "the reckless proposer needs speed_mps"
+        }
+        ProposerKind::Reckless if !proposer.step.is_empty() => {
+            "steps belong to a script; write kind = \"script\""
+        }
+        ProposerKind::Script if proposer.step.is_empty() => {
+            "a script needs at least one [[proposer.step]]"
+        }
+        ProposerKind::Script if proposer.speed_mps.is_some() => {
+            "speed_mps belongs to the reckless proposer; write linear_mps into the steps"
+        }
+        _ => return Ok(()),
+    };
+    Err((Some(scenario.proposer.span()), complaint.to_owned()))
+}
+
+fn check_naked(scenario: &Scenario) -> Result<(), Complaint> {
+    let Some(naked) = &scenario.naked else {
+        return Ok(());
+    };
+    if !naked.get_ref().must_touch && naked.get_ref().reason.is_none() {
+        let message = "naked.must_touch = false needs a reason, such as reason = \"not a contact \
+                       scenario: the command never comes\"";
+        return Err((Some(naked.span()), message.to_owned()));
+    }
+    Ok(())
+}
+
+fn check_fault(fault: &FaultEntry) -> Result<(), String> {
+    if fault.kind.needs_offset() != fault.offset_s.is_some() {
+        return Err(format!(
+            "{:?} {} offset_s",
+            fault.kind,
+            if fault.kind.needs_offset() {
+                "needs"
+            } else {
+                "does not take"
+            }
+        ));
+    }
+    if fault.fraction.is_some() && !fault.kind.takes_fraction() {
+        return Err(format!("{:?} does not take fraction", fault.kind));
+    }
+    let jumps = fault.jump_m.is_some() || fault.jump_deg.is_some();
+    if jumps != (fault.kind == FaultKind::OdometryJump) {
+        return Err("jump_m and jump_deg belong to odometry_jump, which needs one of them".into());
+    }
+    if fault.until_s.is_some_and(|until| until <= fault.from_s) {
+        return Err("until_s must be after from_s".into());
+    }
+    Ok(())
+}
+
+fn motions(scenario: &Scenario) -> impl Iterator<Item = &toml::Spanned<Motion>> {
+    let walls = scenario.wall.iter().map(|body| &body.motion);
+    let boxes = scenario.boxes.iter().map(|body| &body.motion);
+    let circles = scenario.circle.iter().map(|body| &body.motion);
+    walls.chain(boxes).chain(circles).flatten()
+}
+
+fn check_motion(motion: &Motion) -> Result<(), String> {
+    let kinds = usize::from(motion.velocity_mps.is_some())
+        + usize::from(motion.turn_radps.is_some())
+        + usize::from(motion.way_points.is_some());
+    if kinds != 1 {
+        return Err("write exactly one of velocity_mps, turn_radps or way_points".into());
+    }
+    if motion.turn_radps.is_some() != motion.pivot_m.is_some() {
+        return Err("turn_radps and pivot_m go together".into());
+    }
+    if motion.from_s.is_some() && motion.when_robot_passes_x_m.is_some() {
+        return Err("write either from_s or when_robot_passes_x_m".into());
+    }
+    if motion.delay_s.is_some() && motion.when_robot_passes_x_m.is_none() {
+        return Err("delay_s counts from when_robot_passes_x_m; else write from_s".into());
+    }
+    if let Some(points) = &motion.way_points {
+        let rising = points
+            .windows(2)
+            .all(|pair| matches!(pair, [a, b] if a[0] < b[0]));
+        if points.is_empty() || !rising {
+            return Err("way_points need times that rise from one to the next".into());
+        }
+    }
+    Ok(())
+}
+
+fn check_axis(axis: &SweepAxis) -> Result<(), String> {
+    let ranged = [
+        axis.path.is_some(),
+        axis.from.is_some(),
+        axis.to.is_some(),
+        axis.count.is_some(),
+    ];
+    let all = ranged.iter().all(|given| *given);
+    let any = ranged.iter().any(|given| *given);
+    if all == axis.values.is_empty() && any == all && axis.count != Some(0) {
+        Ok(())
+    } else {
+        Err(
+            "a sweep axis is either path, from, to and count (at least 1), or [[sweep.values]]"
+                .into(),
+        )
+    }
+}

@@ -1,0 +1,417 @@
+//! The scenario file as people write it.
+//!
+//! Every table refuses keys it does not know; numbers carry their unit in the key and are checked
+//! while they are read, so each error names file, line, column and what to write.
+
+mod check;
+mod error;
+pub mod fault;
+mod load;
+pub mod value;
+
+#[cfg(test)]
+mod tests;
+
+pub use error::ScenarioError;
+pub use load::{load_dir, load_file, parse};
+
+use serde::Deserialize;
+use toml::Spanned;
+use value::{Fraction, NonNegative, Number, Pair, Positive};
+
+/// One scenario: a world, a robot in it, what goes wrong, and what must come of it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// File stem and variant; not in the file.
+    #[serde(skip)]
+    pub name: String,
+    /// File stem; not in the file.
+    #[serde(skip)]
+    pub group: String,
+    /// One sentence for people.
+    pub title: String,
+    /// Ids of the requirements it covers.
+    pub requirements: Vec<String>,
+    /// Robot file stem, such as `seekur_jr`.
+    pub robot: String,
+    /// Bound of obstacle speed given to the guard (assumption A-OBSTACLE).
+    pub obstacle_speed_mps: NonNegative,
+    /// Seed of all noise.
+    pub seed: u64,
+    /// When the run ends at the latest.
+    pub timeout_s: Positive,
+    /// Overrides the robot file: whether the guard's tube covers a dying host.
+    pub cover_host_death: Option<bool>,
+    /// Where the robot stands at time zero.
+    #[serde(default)]
+    pub start: Start,
+    /// Lines without thickness.
+    #[serde(default)]
+    pub wall: Vec<Wall>,
+    /// Rectangles.
+    #[serde(default, rename = "box")]
+    pub boxes: Vec<BoxBody>,
+    /// Discs.
+    #[serde(default)]
+    pub circle: Vec<Circle>,
+    /// Where the robot wants to go.
+    pub goal: Option<Goal>,
+    /// Who proposes the motion.
+    pub proposer: Spanned<Proposer>,
+    /// Laser scanners, where they differ from the robot file.
+    #[serde(default)]
+    pub sensor: Sensor,
+    /// Odometry.
+    #[serde(default)]
+    pub odometry: OdometryModel,
+    /// Drive.
+    #[serde(default)]
+    pub drive: Drive,
+    /// Operator: resets and the emergency stop line.
+    #[serde(default)]
+    pub operator: Operator,
+    /// What goes wrong, and when.
+    #[serde(default)]
+    pub fault: Vec<Spanned<fault::FaultEntry>>,
+    /// What must come of it.
+    pub expect: Expect,
+    /// The run without the guard; default it must touch.
+    pub naked: Option<Spanned<Naked>>,
+    /// Axes of a parameter sweep; each combination is a variant.
+    #[serde(default)]
+    pub sweep: Vec<Spanned<SweepAxis>>,
+    /// How many naked runs of a sweep must touch; default all.
+    pub sweep_naked_touch_min: Option<usize>,
+}
+
+/// Pose and twist at time zero.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+#[allow(missing_docs)] // keys name themselves
+pub struct Start {
+    pub x_m: Number,
+    pub y_m: Number,
+    pub heading_deg: Number,
+    pub linear_mps: Number,
+    pub angular_radps: Number,
+}
+
+/// How a body looks to a laser.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Material {
+    /// Returns every beam.
+    #[default]
+    Solid,
+    /// Glass or black cloth: returns none.
+    Invisible,
+}
+
+/// A line without thickness.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Wall {
+    /// Name for reports.
+    pub name: Option<String>,
+    /// One end.
+    pub from_m: Pair,
+    /// The other end.
+    pub to_m: Pair,
+    /// How it looks to a laser.
+    #[serde(default)]
+    pub material: Material,
+    /// How it moves.
+    pub motion: Option<Spanned<Motion>>,
+}
+
+/// A rectangle.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoxBody {
+    /// Name for reports.
+    pub name: Option<String>,
+    /// Centre.
+    pub center_m: Pair,
+    /// Full extents along its own x and y.
+    pub size_m: [Positive; 2],
+    /// Heading of its own x.
+    #[serde(default)]
+    pub heading_deg: Number,
+    /// How it looks to a laser.
+    #[serde(default)]
+    pub material: Material,
+    /// How it moves.
+    pub motion: Option<Spanned<Motion>>,
+}
+
+/// A disc.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Circle {
+    /// Name for reports.
+    pub name: Option<String>,
+    /// Centre.
+    pub center_m: Pair,
+    /// Radius.
+    pub radius_m: Positive,
+    /// How it looks to a laser.
+    #[serde(default)]
+    pub material: Material,
+    /// How it moves.
+    pub motion: Option<Spanned<Motion>>,
+}
+
+/// Motion of a body: one of `velocity_mps`, `turn_radps` with `pivot_m`, or `way_points`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Motion {
+    /// Start time; default 0.
+    pub from_s: Option<NonNegative>,
+    /// Instead: start when the robot's rotation centre first has this x ...
+    pub when_robot_passes_x_m: Option<Number>,
+    /// ... and this much later.
+    pub delay_s: Option<NonNegative>,
+    /// How long; default for ever.
+    pub for_s: Option<Positive>,
+    /// Constant velocity.
+    pub velocity_mps: Option<Pair>,
+    /// Constant turn rate about `pivot_m`.
+    pub turn_radps: Option<Number>,
+    /// Pivot in the world.
+    pub pivot_m: Option<Pair>,
+    /// `[t_s, x_m, y_m]` of the body's centre; times count from the start of the motion.
+    pub way_points: Option<Vec<[Number; 3]>>,
+}
+
+/// A disc the rotation centre must enter.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Goal {
+    /// Centre.
+    pub position_m: Pair,
+    /// Radius.
+    pub radius_m: Positive,
+}
+
+/// Who proposes the motion.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Proposer {
+    /// What sort.
+    pub kind: ProposerKind,
+    /// `reckless`: speed towards the goal.
+    pub speed_mps: Option<Positive>,
+    /// `reckless`: turn rate for each radian of heading error; default 1.5.
+    pub heading_gain_per_s: Option<Positive>,
+    /// `script`: what to do, in order.
+    #[serde(default)]
+    pub step: Vec<Step>,
+}
+
+/// Sort of proposer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProposerKind {
+    /// Heads straight for the goal and avoids nothing.
+    Reckless,
+    /// Plays back fixed motions.
+    Script,
+}
+
+/// One scripted motion.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Step {
+    /// Ends this long after the robot was first allowed to move.
+    pub until_s: Positive,
+    /// Forward speed.
+    #[serde(default)]
+    pub linear_mps: Number,
+    /// Turn rate (differential drive).
+    pub angular_radps: Option<Number>,
+    /// Path curvature; with a differential drive the turn rate is speed times curvature.
+    pub curvature_per_m: Option<Number>,
+}
+
+/// Laser scanners, where they differ from the robot file.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Sensor {
+    /// Standard deviation of the range; default the robot file's.
+    pub noise_sigma_m: Option<NonNegative>,
+    /// Systematic range error; default the robot file's, reading too long.
+    pub bias_m: Option<Number>,
+    /// `false`: all beams at the time of the first.
+    pub skew: Option<bool>,
+    /// Part of the beams that are lost at random.
+    pub dropout_fraction: Fraction,
+    /// Time from the last beam to the host; default 5 ms.
+    pub delay_s: Option<NonNegative>,
+    /// Shortest range; default the robot file's.
+    pub range_min_m: Option<NonNegative>,
+    /// Longest range; default the robot file's.
+    pub range_max_m: Option<Positive>,
+}
+
+/// Odometry model.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct OdometryModel {
+    /// Samples each second; default one each control period.
+    pub rate_hz: Option<Positive>,
+    /// Time from measurement to host; default 0.
+    pub delay_s: NonNegative,
+    /// Position error for each metre, signed; default drawn within the robot's bound.
+    pub error_m_per_m: Option<Number>,
+    /// Heading error for each radian, signed; default drawn within the robot's bound.
+    pub error_rad_per_rad: Option<Number>,
+}
+
+/// Drive model, where it differs from what the robot file assumes at the worst.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Drive {
+    /// Time from decision to wheels, a whole number of 10 ms; default 60 ms or the robot's bound.
+    pub latency_s: Option<NonNegative>,
+    /// Time constant of the first-order lag; default 20 ms or what the robot's bound leaves.
+    pub lag_s: Option<NonNegative>,
+    /// True turn rate for each commanded and measured one (skid steer); default 1.
+    pub slip: Option<Positive>,
+    /// Deceleration the brakes give; default the robot's least.
+    pub braking_mps2: Option<Positive>,
+    /// Angular deceleration; default the robot's least.
+    pub angular_braking_radps2: Option<Positive>,
+    /// Whether v and omega ramp separately; default as the robot file.
+    pub separate_ramps: Option<bool>,
+    /// What the drive does when its watchdog expires; default as the robot file.
+    pub silence: Option<Silence>,
+    /// Its watchdog; default as the robot file.
+    pub watchdog_s: Option<Positive>,
+    /// Its deceleration then; default as the robot file.
+    pub silent_braking_mps2: Option<Positive>,
+    /// Whether the adapter stops at the decision's expiry while the kernel pauses; default true.
+    pub honours_expiry: Option<bool>,
+}
+
+/// What a drive does when its watchdog expires.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Silence {
+    /// Brakes with its silent deceleration.
+    Brake,
+    /// Runs out with its silent deceleration, each of v and omega by itself.
+    Coast,
+    /// Goes on for ever with the last set point.
+    None,
+}
+
+/// What the operator does.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Operator {
+    /// Times of resets; default one as soon as the robot can take it (0.2 s + its rest time).
+    pub resets_s: Option<Vec<NonNegative>>,
+    /// `[from_s, until_s]` during which the emergency stop line is pulled.
+    pub emergency_stops_s: Vec<[NonNegative; 2]>,
+}
+
+/// Whether the guarded robot may touch while it moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactExpectation {
+    /// It must not.
+    #[default]
+    Never,
+    /// It may, because an assumption is broken that nothing can detect in time.
+    May,
+    /// It must: the scenario shows what the broken assumption costs.
+    Must,
+}
+
+/// What must come of the guarded run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Expect {
+    /// Whether the goal is reached.
+    pub reached: Option<bool>,
+    /// Contact while moving.
+    #[serde(default)]
+    pub contact: ContactExpectation,
+    /// At rest at the end, and before something.
+    pub stopped_before: Option<StoppedBefore>,
+    /// Whether it ends at rest because the guard or the stop logic holds it.
+    pub blocked: Option<bool>,
+    /// Reasons that must occur, as the kernel names them.
+    #[serde(default)]
+    pub reasons: Vec<String>,
+    /// A stop decision must follow the first fault within this time.
+    pub stop_within_s: Option<Positive>,
+    /// Least path length: the robot did try.
+    pub travelled_min_m: Option<NonNegative>,
+    /// Least angle turned in all.
+    pub turned_min_rad: Option<NonNegative>,
+    /// Assumptions that the result must name as broken; any other broken one fails the scenario.
+    #[serde(default)]
+    pub assumptions_broken: Vec<String>,
+}
+
+/// Where the robot must have stopped; give at least one.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoppedBefore {
+    /// At least this far from every body at the end.
+    pub clearance_m: Option<NonNegative>,
+    /// Rotation centre never beyond this x.
+    pub x_m: Option<Number>,
+    /// Rotation centre never beyond this y.
+    pub y_m: Option<Number>,
+}
+
+/// The run without the guard.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Naked {
+    /// Whether it must touch.
+    pub must_touch: bool,
+    /// Why not, if not.
+    pub reason: Option<String>,
+}
+
+impl Scenario {
+    /// Why there is no naked twin; `None` if there is one and it must touch.
+    #[must_use]
+    pub fn naked_excuse(&self) -> Option<&str> {
+        let naked = self.naked.as_ref()?.get_ref();
+        (!naked.must_touch).then(|| naked.reason.as_deref().unwrap_or_default())
+    }
+}
+
+/// One axis of a sweep: either `values`, or `path` with `from`, `to` and `count`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SweepAxis {
+    /// Word for the variant's name.
+    pub name: String,
+    /// Dotted path into the file, such as `circle.0.motion.delay_s`.
+    pub path: Option<String>,
+    /// First value.
+    pub from: Option<Number>,
+    /// Last value.
+    pub to: Option<Number>,
+    /// How many values, ends included.
+    pub count: Option<usize>,
+    /// Named sets of paths and values.
+    #[serde(default)]
+    pub values: Vec<SweepValue>,
+}
+
+/// One point of a named axis.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SweepValue {
+    /// Word for the variant's name.
+    pub label: String,
+    /// Dotted paths and their values.
+    pub set: toml::Table,
+}

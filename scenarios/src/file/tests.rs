@@ -1,0 +1,131 @@
+//! Errors name line, column and what to write; sweeps give the variants they promise.
+
+use super::*;
+
+const GOOD: &str = r#"title = "A wall ahead"
+requirements = ["GUARD"]
+robot = "seekur_jr"
+obstacle_speed_mps = 0
+seed = 1
+timeout_s = 10.0
+
+[[wall]]
+from_m = [5.0, -2.0]
+to_m = [5.0, 2.0]
+
+[[circle]]
+center_m = [3.0, 3.0]
+radius_m = 0.2
+motion = { velocity_mps = [0.0, -1.0], when_robot_passes_x_m = 1.0, delay_s = 1.0 }
+
+[proposer]
+kind = "script"
+
+[[proposer.step]]
+until_s = 5.0
+linear_mps = 0.5
+
+[expect]
+blocked = true
+"#;
+
+fn error(text: &str) -> String {
+    parse(text, "a.toml", "a")
+        .expect_err("the file is wrong")
+        .to_string()
+}
+
+#[test]
+fn good_file_parses() {
+    let scenarios = parse(GOOD, "a.toml", "a").expect("the file is good");
+    assert_eq!(scenarios.len(), 1);
+    assert_eq!(scenarios[0].name, "a");
+    assert_eq!(scenarios[0].naked_excuse(), None);
+}
+
+#[test]
+fn unknown_key_is_named_with_its_line_and_the_known_ones() {
+    let text = GOOD.replace("seed = 1", "sead = 1");
+    let message = error(&text);
+    assert!(message.starts_with("a.toml:5:1:"), "{message}");
+    assert!(
+        message.contains("`sead`") && message.contains("`seed`"),
+        "{message}"
+    );
+}
+
+#[test]
+fn impossible_number_is_refused_where_it_stands() {
+    let message = error(&GOOD.replace("radius_m = 0.2", "radius_m = -0.2"));
+    assert!(message.starts_with("a.toml:14:12:"), "{message}");
+    assert!(message.contains("above zero"), "{message}");
+    let message = error(&GOOD.replace("timeout_s = 10.0", "timeout_s = nan"));
+    assert!(message.starts_with("a.toml:6:13:"), "{message}");
+}
+
+#[test]
+fn wrong_type_and_broken_syntax_have_a_place() {
+    let message = error(&GOOD.replace("seed = 1", "seed = \"one\""));
+    assert!(message.starts_with("a.toml:5:8:"), "{message}");
+    let message = error(&GOOD.replace("[expect]", "[expect"));
+    assert!(message.starts_with("a.toml:24:"), "{message}");
+}
+
+#[test]
+fn combinations_that_make_no_sense_are_refused() {
+    let message = error(&GOOD.replace("kind = \"script\"", "kind = \"reckless\""));
+    assert!(message.starts_with("a.toml:17:1:"), "{message}");
+    assert!(message.contains("[goal]"), "{message}");
+    let message = error(&GOOD.replace("blocked = true", ""));
+    assert!(message.contains("asks for nothing"), "{message}");
+    let message = error(&format!("{GOOD}\n[naked]\nmust_touch = false\n"));
+    assert!(message.contains("needs a reason"), "{message}");
+    let fault = "\n[[fault]]\nkind = \"scan_future\"\nfrom_s = 1.0\n";
+    let message = error(&format!("{GOOD}{fault}"));
+    assert!(message.contains("needs offset_s"), "{message}");
+    assert!(message.starts_with("a.toml:27:1:"), "{message}");
+    let message = error(&GOOD.replace("delay_s = 1.0", "from_s = 1.0"));
+    assert!(message.starts_with("a.toml:15:10:"), "{message}");
+}
+
+#[test]
+fn sweep_multiplies_its_axes() {
+    let sweep = r#"
+[[sweep]]
+name = "side"
+[[sweep.values]]
+label = "left"
+set = { "circle.0.center_m" = [3.0, 3.0] }
+[[sweep.values]]
+label = "right"
+set = { "circle.0.center_m" = [3.0, -3.0], "circle.0.motion.velocity_mps.1" = 1.0 }
+
+[[sweep]]
+name = "timing"
+path = "circle.0.motion.delay_s"
+from = 0.5
+to = 3.5
+count = 20
+"#;
+    let scenarios = parse(&format!("{GOOD}{sweep}"), "a.toml", "a").expect("the file is good");
+    assert_eq!(scenarios.len(), 40);
+    assert_eq!(scenarios[0].name, "a/side_left-timing_00");
+    assert_eq!(scenarios[39].name, "a/side_right-timing_19");
+    let motion = scenarios[39].circle[0]
+        .motion
+        .clone()
+        .expect("a motion")
+        .into_inner();
+    assert_eq!(motion.delay_s.map(NonNegative::get), Some(3.5));
+    assert_eq!(motion.velocity_mps.map(value::floats), Some([0.0, 1.0]));
+    assert_eq!(scenarios[39].group, "a");
+}
+
+#[test]
+fn sweep_over_a_path_that_is_not_there_is_refused() {
+    let sweep =
+        "\n[[sweep]]\nname = \"x\"\npath = \"circle.7.radius_m\"\nfrom = 1\nto = 2\ncount = 2\n";
+    let message = error(&format!("{GOOD}{sweep}"));
+    assert!(message.contains("circle.7.radius_m"), "{message}");
+    assert!(message.starts_with("a.toml:27:1:"), "{message}");
+}
