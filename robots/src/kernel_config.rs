@@ -8,7 +8,8 @@ use haltline::convert::{self, Round};
 use haltline::time::Duration;
 use haltline::units::{Acceleration, AngularAcceleration, AngularSpeed, Length, Ppm, Speed};
 
-use crate::robot::{Kinematics, Mask, Ramps, Scanner, Values};
+use crate::robot::{Kinematics, Ramps, Values};
+use crate::scanner::{Mask, Scanner};
 use crate::{RobotConfig, SCANNERS};
 use Round::{Down, Up};
 

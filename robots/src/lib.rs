@@ -11,16 +11,22 @@ mod parse;
 mod reader;
 mod robot;
 mod rules;
+mod scanner;
 pub mod schema;
+mod suggest;
+mod template;
 
 use std::path::Path;
 
 pub use error::RobotError;
 use error::Source;
 pub use robot::{
-    Encoding, Footprint, HostDeath, Kinematics, Limits, Mask, Memory, Ramps, Robot, Scanner,
-    Silence, Steering, Timing, Tolerances, Values, Zone,
+    Footprint, HostDeath, Kinematics, Limits, Memory, Ramps, Robot, Silence, Steering, Timing,
+    Tolerances, Values, Zone,
 };
+pub use scanner::{Encoding, Mask, Scanner};
+
+pub use template::{key_list, template};
 
 /// Most scanners of one robot.
 pub const SCANNERS: usize = 4;
@@ -35,7 +41,12 @@ pub const MEMORY: usize = 1024;
 pub type RobotConfig = haltline::config::Config<SCANNERS>;
 
 /// The robot files that come with the project: name and text.
-pub const EMBEDDED: &[(&str, &str)] = &[("seekur_jr", include_str!("../seekur_jr.toml"))];
+pub const EMBEDDED: &[(&str, &str)] = &[
+    ("seekur_jr", include_str!("../seekur_jr.toml")),
+    ("pses_car", include_str!("../pses_car.toml")),
+    ("jackal", include_str!("../jackal.toml")),
+    ("sena", include_str!("../sena.toml")),
+];
 
 impl Robot {
     /// Reads and checks a robot file.

@@ -3,9 +3,10 @@
 use crate::error::{RobotError, Source};
 use crate::reader::{self, Places, TableReader};
 use crate::robot::{
-    Encoding, Footprint, HostDeath, Kinematics, Limits, Mask, Memory, Ramps, Scanner, Silence,
-    Steering, Timing, Tolerances, Values, Zone,
+    Footprint, HostDeath, Kinematics, Limits, Memory, Ramps, Silence, Steering, Timing, Tolerances,
+    Values, Zone,
 };
+use crate::scanner::{Encoding, Mask, Scanner};
 
 /// Name, values and the places of all values.
 pub(crate) fn values(source: Source<'_>) -> Result<(String, Values, Places), RobotError> {
