@@ -1,0 +1,96 @@
+//! Records what was compiled: hashes of the kernel's sources, and where the code quotes requirements.
+//!
+//! The certificate must name the kernel that ran, not the one that lies on the disk later, so the
+//! hashes are taken when the command is built. Nothing outside the checkout is read.
+
+use sha2::{Digest as _, Sha256};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Folders whose Rust files may quote requirements, relative to the root of the checkout.
+const QUOTING: [&str; 8] = [
+    "kernel/src",
+    "kernel/tests",
+    "spec/src",
+    "spec/tests",
+    "scenarios/src",
+    "scenarios/tests",
+    "drives",
+    "verification",
+];
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let root = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR")?).join("..");
+    let mut out = String::new();
+    write_kernel_hashes(&root, &mut out)?;
+    write_citations(&root, &mut out)?;
+    let target = PathBuf::from(std::env::var("OUT_DIR")?).join("provenance.rs");
+    std::fs::write(target, out)?;
+    Ok(())
+}
+
+fn write_kernel_hashes(root: &Path, out: &mut String) -> Result<(), Box<dyn std::error::Error>> {
+    let mut files = vec!["kernel/Cargo.toml".to_owned()];
+    list(root, "kernel/src", &mut files)?;
+    files.sort();
+    println!("cargo::rerun-if-changed=../kernel/Cargo.toml");
+    out.push_str("pub const KERNEL_SOURCES: &[(&str, &str)] = &[\n");
+    for file in files {
+        let hash = Sha256::digest(std::fs::read(root.join(&file))?);
+        let hex = hash.iter().fold(String::new(), |mut hex, byte| {
+            let _ = write!(hex, "{byte:02x}");
+            hex
+        });
+        writeln!(out, "    ({file:?}, {hex:?}),")?;
+    }
+    out.push_str("];\n");
+    Ok(())
+}
+
+fn write_citations(root: &Path, out: &mut String) -> Result<(), Box<dyn std::error::Error>> {
+    let mut files = Vec::new();
+    for folder in QUOTING {
+        list(root, folder, &mut files)?;
+    }
+    files.sort();
+    files.dedup();
+    out.push_str("pub const CITATIONS: &[(&str, &str, usize, bool)] = &[\n");
+    for file in files.iter().filter(|file| file.ends_with(".rs")) {
+        let text = std::fs::read_to_string(root.join(file))?;
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        for (index, line) in lines.iter().enumerate() {
+            let Some((_, anchor)) = line
+                .strip_prefix("//= spec/")
+                .and_then(|quote| quote.split_once('#'))
+            else {
+                continue;
+            };
+            let id = anchor.trim().to_uppercase();
+            let is_test = lines
+                .get(index + 1)
+                .is_some_and(|next| next.starts_with("//= type=test"));
+            writeln!(out, "    ({id:?}, {file:?}, {}, {is_test}),", index + 1)?;
+        }
+    }
+    out.push_str("];\n");
+    Ok(())
+}
+
+/// Adds all files below `folder`, as paths from the root with forward slashes.
+fn list(root: &Path, folder: &str, files: &mut Vec<String>) -> std::io::Result<()> {
+    let path = root.join(folder);
+    if !path.is_dir() {
+        return Ok(());
+    }
+    println!("cargo::rerun-if-changed=../{folder}");
+    for entry in std::fs::read_dir(path)? {
+        let entry = entry?;
+        let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
+        if entry.file_type()?.is_dir() {
+            list(root, &name, files)?;
+        } else {
+            files.push(name);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,349 @@
+//! What may be claimed after a batch of runs: as strong as the evidence, and no stronger.
+//!
+//! A claim without data is *not checkable*, never passed; a part that nobody examined is
+//! *not claimed yet*.
+
+use crate::report::words;
+use haltline_scenarios::result::{CaseResult, MonitorReport, Outcome, SuiteResult};
+use serde::Serialize;
+
+/// Requirement families with a monitor that judges every tick of every guarded run.
+pub const MONITORED: [&str; 6] = ["CLAIM", "LIMIT", "ZONE", "FRESH", "SILENT", "LATCH"];
+
+/// How a claim stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// The evidence is there and nothing spoke against it.
+    Holds,
+    /// Something spoke against it.
+    Failed,
+    /// The evidence needed is missing.
+    NotCheckable,
+    /// Nobody claims it.
+    NotClaimed,
+}
+
+impl Status {
+    /// The status in words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Failed => "FAILED",
+            Self::NotCheckable => "not checkable",
+            Self::NotClaimed => "not claimed yet",
+        }
+    }
+}
+
+/// What kind of evidence stands behind a claim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EvidenceKind {
+    /// Simulated runs, judged by monitors or exact geometry.
+    Tested,
+    /// Arithmetic on the robot file.
+    Computed,
+    /// None.
+    None,
+}
+
+/// The evidence in numbers and words.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Evidence {
+    /// Its kind.
+    pub kind: EvidenceKind,
+    /// In words.
+    pub words: String,
+    /// Number of runs.
+    pub runs: usize,
+    /// Number of ticks judged.
+    pub ticks_checked: u64,
+    /// Number of ticks at which the requirement had something to say.
+    pub ticks_engaged: u64,
+}
+
+impl Evidence {
+    /// No evidence, with the reason.
+    fn none(words: impl Into<String>) -> Self {
+        Self {
+            kind: EvidenceKind::None,
+            words: words.into(),
+            runs: 0,
+            ticks_checked: 0,
+            ticks_engaged: 0,
+        }
+    }
+
+    /// Arithmetic on the robot file.
+    #[must_use]
+    pub fn computed(words: impl Into<String>) -> Self {
+        Self {
+            kind: EvidenceKind::Computed,
+            ..Self::none(words)
+        }
+    }
+}
+
+/// Something that spoke against a claim.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Counterexample {
+    /// Case or rule.
+    pub case: String,
+    /// Time within the run, if it happened at one.
+    pub t_s: Option<f64>,
+    /// Tick of the kernel at that time, if it happened at one.
+    pub tick: Option<u64>,
+    /// What was seen and what was wanted.
+    pub what: String,
+    /// Command that shows it again.
+    pub replay: String,
+}
+
+/// One claim of the certificate.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Claim {
+    /// Requirement family or part of the certificate.
+    pub id: String,
+    /// What is claimed.
+    pub statement: String,
+    /// How it stands.
+    pub status: Status,
+    /// Why one may believe it.
+    pub evidence: Evidence,
+    /// What spoke against it; the first few of each case.
+    pub counterexamples: Vec<Counterexample>,
+    /// Cases that exercised it.
+    pub cases: Vec<String>,
+}
+
+/// How to show a case again.
+#[derive(Clone, Debug)]
+pub struct Replay {
+    /// Folder of the scenario files as the user may type it.
+    pub folder: String,
+    /// Control period, seconds.
+    pub period_s: f64,
+}
+
+impl Replay {
+    /// The command that runs a case alone.
+    #[must_use]
+    pub fn command(&self, case: &CaseResult) -> String {
+        let file = format!("{}/{}.toml", self.folder, case.group);
+        match case.name.strip_prefix(&format!("{}/", case.group)) {
+            Some(variant) => format!("haltline run {file} --variant '{variant}'"),
+            None => format!("haltline run {file}"),
+        }
+    }
+
+    fn tick(&self, t_s: f64) -> Option<u64> {
+        (self.period_s > 0.0).then(|| (t_s / self.period_s).round().max(0.0) as u64)
+    }
+}
+
+fn statement(id: &str) -> &'static str {
+    match id {
+        "CLAIM" => {
+            "While it moves, the robot touches no body that a valid beam or the memory showed at the \
+             tick that accepted the manoeuvre, if that body has moved at most at the obstacle speed since."
+        }
+        "LIMIT" => "Every accepted motion lies within the speed limits and the dynamic window.",
+        "ZONE" => "A point in the critical zone starts a stop in the same tick.",
+        "FRESH" => "No motion on a scan, odometry or command older than its limit.",
+        "SILENT" => "Every decision carries an expiry, and silence stops the robot.",
+        "LATCH" => "An emergency stop holds until reset at rest; release replays no old command.",
+        _ => "",
+    }
+}
+
+/// Claims from a batch of runs.
+#[must_use]
+pub fn from_suite(suite: &SuiteResult, replay: &Replay) -> Vec<Claim> {
+    let mut claims: Vec<Claim> = MONITORED
+        .iter()
+        .map(|id| monitored(id, suite, replay))
+        .collect();
+    claims.push(scenarios(suite, replay));
+    claims.push(twins(suite));
+    claims
+}
+
+fn monitored(id: &str, suite: &SuiteResult, replay: &Replay) -> Claim {
+    let reports: Vec<(&CaseResult, &MonitorReport)> = suite
+        .cases
+        .iter()
+        .flat_map(|case| case.guarded.monitors.iter().map(move |m| (case, m)))
+        .filter(|(_, report)| report.id == id)
+        .collect();
+    let checked = reports.iter().map(|(_, r)| r.checked).sum();
+    let engaged: u64 = reports.iter().map(|(_, r)| r.engaged).sum();
+    let violations: u64 = reports.iter().map(|(_, r)| r.violation_count).sum();
+    let counterexamples = reports
+        .iter()
+        .flat_map(|(case, report)| report.violations.iter().map(move |v| (case, v)))
+        .map(|(case, violation)| Counterexample {
+            case: case.name.clone(),
+            t_s: Some(violation.t_s),
+            tick: replay.tick(violation.t_s),
+            what: violation.what.clone(),
+            replay: replay.command(case),
+        })
+        .collect();
+    let cases: Vec<String> = reports
+        .iter()
+        .filter(|(_, report)| report.engaged > 0)
+        .map(|(case, _)| case.name.clone())
+        .collect();
+    let status = match (violations, engaged) {
+        (1.., _) => Status::Failed,
+        (0, 0) => Status::NotCheckable,
+        (0, _) => Status::Holds,
+    };
+    let evidence = if engaged == 0 && violations == 0 {
+        Evidence::none("no run exercised it: add a scenario that does")
+    } else {
+        Evidence {
+            kind: EvidenceKind::Tested,
+            words: format!("tested ({})", words::count(cases.len(), "run")),
+            runs: cases.len(),
+            ticks_checked: checked,
+            ticks_engaged: engaged,
+        }
+    };
+    Claim {
+        id: id.to_owned(),
+        statement: statement(id).to_owned(),
+        status,
+        evidence,
+        counterexamples,
+        cases,
+    }
+}
+
+/// Every run came out as its file expects.
+fn scenarios(suite: &SuiteResult, replay: &Replay) -> Claim {
+    let failed = suite
+        .cases
+        .iter()
+        .filter(|case| case.judgement.outcome == Outcome::Fail)
+        .map(|case| Counterexample {
+            case: case.name.clone(),
+            t_s: None,
+            tick: None,
+            what: case.judgement.sentences.join(" "),
+            replay: replay.command(case),
+        });
+    let sweeps = suite
+        .groups
+        .iter()
+        .filter(|group| group.judgement.outcome == Outcome::Fail)
+        .map(|group| Counterexample {
+            case: group.group.clone(),
+            t_s: None,
+            tick: None,
+            what: group.judgement.sentences.join(" "),
+            replay: format!("haltline run {}/{}.toml", replay.folder, group.group),
+        });
+    let counterexamples: Vec<Counterexample> = failed.chain(sweeps).collect();
+    let runs = suite.cases.len();
+    let status = match (counterexamples.is_empty(), runs) {
+        (false, _) => Status::Failed,
+        (true, 0) => Status::NotCheckable,
+        (true, _) => Status::Holds,
+    };
+    Claim {
+        id: "SCENARIOS".to_owned(),
+        statement: "Every scenario came out as its file expects (goal reached, stopped before, blocked)."
+            .to_owned(),
+        status,
+        evidence: if runs == 0 {
+            Evidence::none("no scenario is for this robot")
+        } else {
+            Evidence {
+                kind: EvidenceKind::Tested,
+                words: format!("tested ({})", words::count(runs, "run")),
+                runs,
+                ticks_checked: 0,
+                ticks_engaged: 0,
+            }
+        },
+        counterexamples,
+        cases: suite.cases.iter().map(|case| case.name.clone()).collect(),
+    }
+}
+
+/// The scenarios can hurt: without the guard, the robot touches.
+///
+/// Whether enough twins touched is part of each case's and each sweep's own verdict; this claim
+/// only counts, and cannot be made without at least one twin that touched.
+fn twins(suite: &SuiteResult) -> Claim {
+    let twins: Vec<&CaseResult> = suite.cases.iter().filter(|c| c.naked.is_some()).collect();
+    let touched: Vec<String> = twins
+        .iter()
+        .filter(|case| case.naked.as_ref().is_some_and(|n| !n.contacts.is_empty()))
+        .map(|case| case.name.clone())
+        .collect();
+    let (status, evidence) = if touched.is_empty() {
+        (
+            Status::NotCheckable,
+            Evidence::none("no naked twin touched anything: the scenarios show nothing"),
+        )
+    } else {
+        let words = format!(
+            "tested ({}, of which {} touched)",
+            words::count(twins.len(), "naked run"),
+            touched.len()
+        );
+        let evidence = Evidence {
+            kind: EvidenceKind::Tested,
+            words,
+            runs: twins.len(),
+            ticks_checked: 0,
+            ticks_engaged: 0,
+        };
+        (Status::Holds, evidence)
+    };
+    Claim {
+        id: "TWINS".to_owned(),
+        statement: "The scenarios are dangerous: driven without the guard, the robot touches.".to_owned(),
+        status,
+        evidence,
+        counterexamples: Vec::new(),
+        cases: touched,
+    }
+}
+
+/// Parts of the certificate that nobody claims yet, with what there is instead.
+#[must_use]
+pub fn not_claimed() -> Vec<Claim> {
+    let property = "property tests in the repository, not run by this command";
+    let parts = [
+        ("GUARD", "No accepted tube contains a known point or enters unknown space.", property),
+        ("BRAKE", "An accepted tube always exists or the robot is at rest.", property),
+        ("INPUT", "Input that is malformed, reordered or missing is classified, never ignored.", property),
+        ("MEMORY", "A hit is never lost but by the rule; unknown is never free.", property),
+        ("PROOFS", "Machine-checked proofs on the compiled kernel.", "no proof ledger yet"),
+        ("ADVERSARY", "Seeded hostile runs find no failure while the assumptions hold.", "no search yet"),
+        (
+            "TIME",
+            "The work of a tick stays below a declared bound.",
+            "wall times of this machine are in timing.json; they bound nothing",
+        ),
+    ];
+    parts
+        .into_iter()
+        .map(|(id, statement, instead)| Claim {
+            id: id.to_owned(),
+            statement: statement.to_owned(),
+            status: Status::NotClaimed,
+            evidence: Evidence::none(instead),
+            counterexamples: Vec::new(),
+            cases: Vec::new(),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests;

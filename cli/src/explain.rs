@@ -1,0 +1,152 @@
+//! `haltline explain`: a requirement, what it assumes, and what stands behind it.
+
+use crate::failure::{Exit, Failure};
+use crate::provenance;
+use console::style;
+use haltline_spec::requirements::{
+    Assumption, Requirement, assumption, assumptions, requirement, requirements,
+};
+
+/// Prints what is known under `id`; without one, a list of everything.
+///
+/// # Errors
+/// The id is unknown; the message names near ones.
+pub fn explain(id: Option<&str>) -> Result<Exit, Failure> {
+    let Some(id) = id else {
+        print_list(&requirements());
+        println!("\nAssumptions:");
+        for found in assumptions() {
+            println!("  {:<14} {}", style(found.id).bold(), first_line(&found.text));
+        }
+        return Ok(Exit::Holds);
+    };
+    if let Some(found) = requirement(id) {
+        print_requirement(&found);
+    } else if let Some(found) = assumption(id) {
+        print_assumption(&found);
+    } else {
+        let family: Vec<Requirement> = requirements()
+            .into_iter()
+            .filter(|r| r.family.prefix().eq_ignore_ascii_case(id))
+            .collect();
+        if family.is_empty() {
+            return Err(unknown(id));
+        }
+        print_list(&family);
+    }
+    Ok(Exit::Holds)
+}
+
+fn first_line(text: &str) -> String {
+    text.split("\n\n").next().unwrap_or_default().replace('\n', " ")
+}
+
+fn print_list(list: &[Requirement]) {
+    let mut family = None;
+    for found in list {
+        if family != Some(found.family) {
+            family = Some(found.family);
+            println!("{}", style(found.family.prefix()).bold().underlined());
+        }
+        println!("  {:<11} {}", style(found.id).bold(), found.must);
+    }
+}
+
+fn print_requirement(found: &Requirement) {
+    println!("{}  {}:{}", style(found.id).bold(), found.file, found.line);
+    println!("\n{}\n", found.text);
+    println!("{}", style("Assumes").bold());
+    if found.assumes.is_empty() {
+        println!("  nothing");
+    }
+    for id in &found.assumes {
+        let text = assumption(id).map_or_else(String::new, |a| first_line(&a.text));
+        println!("  {id:<14} {text}");
+    }
+    println!("{}", style("Evidence").bold());
+    for line in evidence(found) {
+        println!("  {line}");
+    }
+}
+
+/// What stands behind a requirement, one sentence each; never stronger than what was done.
+#[must_use]
+pub fn evidence(found: &Requirement) -> Vec<String> {
+    let cited = provenance::citations(found.id);
+    let mut lines = Vec::new();
+    for place in &cited {
+        let how = if place.is_test { "tested in" } else { "implemented in" };
+        lines.push(format!("{how} {}:{}", place.file, place.line));
+    }
+    if !cited.iter().any(|place| place.is_test) {
+        lines.push("no test quotes it".into());
+    }
+    let family = found.family.prefix();
+    if crate::claims::MONITORED.contains(&family) {
+        lines.push(format!(
+            "family {family} is monitored at every tick of every scenario run; \
+             `haltline certify ROBOT` counts the ticks"
+        ));
+    }
+    lines.push("machine-checked proof: not claimed yet".into());
+    lines
+}
+
+fn print_assumption(found: &Assumption) {
+    println!("{}  {}:{}", style(found.id).bold(), found.file, found.line);
+    println!("\n{}\n", found.text);
+    let used: Vec<&str> = requirements()
+        .iter()
+        .filter(|r| r.assumes.contains(&found.id))
+        .map(|r| r.id)
+        .collect();
+    println!("{}\n  {}", style("Used by").bold(), used.join(" "));
+}
+
+fn unknown(id: &str) -> Failure {
+    let wanted = id.to_uppercase();
+    let all: Vec<String> = requirements()
+        .iter()
+        .map(|r| r.id.to_owned())
+        .chain(assumptions().iter().map(|a| a.id.to_owned()))
+        .collect();
+    let mut near: Vec<(usize, &String)> = all
+        .iter()
+        .map(|known| (strsim::damerau_levenshtein(&wanted, known), known))
+        .filter(|(distance, _)| *distance <= 4)
+        .collect();
+    near.sort();
+    let near: Vec<&str> = near.iter().take(5).map(|(_, id)| id.as_str()).collect();
+    let hint = if near.is_empty() {
+        "`haltline explain` lists all".to_owned()
+    } else {
+        format!("did you mean {}?", near.join(", "))
+    };
+    Failure::input(format!("no requirement or assumption is called `{id}`; {hint}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_near_miss_is_corrected() {
+        let failure = explain(Some("GAURD-01")).expect_err("unknown");
+        assert_eq!(failure.exit, Exit::BadInput);
+        assert!(failure.message.contains("GUARD-01"), "{}", failure.message);
+    }
+
+    #[test]
+    fn nonsense_gets_the_list() {
+        let failure = explain(Some("xyzzyplugh-and-more")).expect_err("unknown");
+        assert!(failure.message.contains("lists all"));
+    }
+
+    #[test]
+    fn no_evidence_is_called_proof() {
+        for found in requirements() {
+            let lines = evidence(&found).join("\n").to_lowercase();
+            assert!(!lines.contains("proved"), "{lines}");
+        }
+    }
+}

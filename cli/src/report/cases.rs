@@ -1,0 +1,222 @@
+//! The runs of the report: one card each, sweeps as a wall of small maps.
+
+use super::claims::case_anchor;
+use super::drawing::{self, Subject};
+use super::words;
+use crate::certificate::{CaseRecord, Certificate};
+use crate::picture::svg::{self, escape};
+use haltline_scenarios::result::{CaseResult, GroupResult, Outcome, SuiteResult};
+use std::fmt::Write as _;
+
+/// Size of a map in a sweep, pixels.
+const THUMB: [f64; 2] = [260.0, 180.0];
+
+/// The section with all runs: single scenarios first, then sweeps.
+pub fn write(page: &mut String, certificate: &Certificate, suite: &SuiteResult) {
+    page.push_str(
+        "<h2 id=\"runs\">Runs</h2>\n<p class=\"soft\">Every run was driven twice with the same seed: with the guard, \
+         and without it (the naked twin). Contacts are judged by exact geometry at every dynamics step, by code that \
+         shares nothing with the kernel.</p>\n",
+    );
+    legend(page);
+    let in_sweep = |case: &CaseResult| suite.groups.iter().any(|group| group.group == case.group);
+    let records = |name: &str| certificate.cases.iter().find(|record| record.name == name);
+    page.push_str("<div class=\"grid\">");
+    for case in suite.cases.iter().filter(|case| !in_sweep(case)) {
+        if let Some(record) = records(&case.name) {
+            card(page, case, record);
+        }
+    }
+    page.push_str("</div>\n");
+    for group in &suite.groups {
+        sweep(page, group, suite, certificate);
+    }
+}
+
+fn legend(page: &mut String) {
+    let entries = [
+        ("pass", "path, command passed"),
+        ("slow", "slowed by the guard"),
+        ("brake", "braked by the guard"),
+        ("stop", "protective or emergency stop"),
+        ("naked", "naked twin"),
+        ("trail", "moving body"),
+        ("glass", "what a laser cannot see"),
+    ];
+    page.push_str("<div class=\"legend\">");
+    for (class, label) in entries {
+        let _ = write!(
+            page,
+            "<span><svg class=\"hl\" viewBox=\"0 0 26 12\" aria-hidden=\"true\"><path class=\"{class}\" \
+             d=\"M1 6L25 6\"/></svg>{label}</span>"
+        );
+    }
+    page.push_str("<span>⊗ contact</span><span>❶ robot came to rest</span></div>\n");
+}
+
+fn outcome_chip(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Pass => "<span class=\"chip pass\">as expected</span>",
+        Outcome::Fail => "<span class=\"chip fail\">FAILED</span>",
+    }
+}
+
+fn card(page: &mut String, case: &CaseResult, record: &CaseRecord) {
+    let _ = write!(page, "<article class=\"card\" id=\"{}\">", case_anchor(&case.name));
+    if let Some(picture) = drawing::full(case, Subject::Guarded) {
+        page.push_str(&svg::element(&picture));
+    }
+    let _ = write!(
+        page,
+        "<div class=\"body\"><div class=\"row\"><h3>{}</h3>{}</div><div class=\"soft small mono\">{}</div>",
+        escape(&case.title),
+        outcome_chip(case.judgement.outcome),
+        escape(&case.name)
+    );
+    facts(page, case);
+    stops(page, case);
+    failure_or_details(page, case, record);
+    page.push_str("</div></article>\n");
+}
+
+fn facts(page: &mut String, case: &CaseResult) {
+    let run = &case.guarded;
+    let end = if run.reached { "goal after" } else { "ended after" };
+    let mut facts = vec![(end, format!("{:.1} s", run.time_s))];
+    if case.obstacle_speed_mps > 0.0 {
+        facts.push(("obstacles up to", format!("{:.1} m/s", case.obstacle_speed_mps)));
+    }
+    facts.push(("contacts while moving", run.moving_contacts().to_string()));
+    if let Some(gap) = words::nearest(run) {
+        facts.push(("nearest", gap));
+    }
+    let twin = match case.naked.as_ref().map(|naked| naked.contacts.first()) {
+        Some(Some(contact)) => format!("touches {} at {:.1} s", contact.body, contact.t_s),
+        Some(None) => "does not touch".to_owned(),
+        None => "none".to_owned(),
+    };
+    facts.push(("naked twin", twin));
+    page.push_str("<div class=\"facts\">");
+    for (label, value) in facts {
+        let _ = write!(page, "<span>{label} <b>{}</b></span>", escape(&value));
+    }
+    page.push_str("</div>");
+}
+
+fn stops(page: &mut String, case: &CaseResult) {
+    const SHOWN: usize = 4;
+    let stops = &case.guarded.stops;
+    if stops.is_empty() {
+        return;
+    }
+    page.push_str("<ol class=\"stops\">");
+    for stop in stops.iter().take(SHOWN) {
+        let gap = stop
+            .clearance_m
+            .map_or(String::new(), |gap| format!(", {} left", words::metres(gap)));
+        let _ = write!(
+            page,
+            "<li>{:.1} s: {} ({}){}</li>",
+            stop.t_s,
+            escape(&words::reason(&stop.reason)),
+            escape(&words::reason(&stop.decision)),
+            escape(&gap)
+        );
+    }
+    if stops.len() > SHOWN {
+        let _ = write!(page, "<li class=\"soft\">… {} in all</li>", stops.len());
+    }
+    page.push_str("</ol>");
+}
+
+fn failure_or_details(page: &mut String, case: &CaseResult, record: &CaseRecord) {
+    let failed = case.judgement.outcome == Outcome::Fail;
+    if failed {
+        for sentence in &case.judgement.sentences {
+            let _ = write!(page, "<p class=\"bad small\">{}</p>", escape(sentence));
+        }
+        let _ = write!(page, "<pre>{}</pre>", escape(&record.replay));
+        return;
+    }
+    page.push_str("<details><summary>verdict, monitors, replay</summary>");
+    for sentence in &case.judgement.sentences {
+        let _ = write!(page, "<p class=\"small\">{}</p>", escape(sentence));
+    }
+    if let Some(reason) = &case.naked_reason {
+        let _ = write!(page, "<p class=\"small\">No naked twin: {}</p>", escape(reason));
+    }
+    for broken in &case.guarded.assumptions_broken {
+        let (id, what) = (escape(&broken.id), escape(&broken.what));
+        let _ = write!(
+            page,
+            "<p class=\"small\">Breaks <a href=\"#{id}\">{id}</a> on purpose: {what}</p>"
+        );
+    }
+    page.push_str("<p class=\"small soft\">");
+    for monitor in &case.guarded.monitors {
+        let _ = write!(
+            page,
+            "<a href=\"#claim-{id}\">{id}</a> {} / {} ticks · ",
+            monitor.engaged,
+            monitor.checked,
+            id = escape(&monitor.id)
+        );
+    }
+    let _ = write!(page, "seed {}</p><pre>{}</pre></details>", case.seed, escape(&record.replay));
+}
+
+fn sweep(page: &mut String, group: &GroupResult, suite: &SuiteResult, certificate: &Certificate) {
+    let cases: Vec<&CaseResult> = suite.cases.iter().filter(|c| c.group == group.group).collect();
+    let title = cases.first().map_or(group.group.as_str(), |case| case.title.as_str());
+    let _ = write!(
+        page,
+        "<h2 id=\"{}\">{} {}</h2><div class=\"facts\"><span>variants <b>{}</b></span><span>guarded runs that touched \
+         while moving <b>{}</b></span><span>naked runs that touched <b>{}</b> (at least {} must)</span></div>",
+        case_anchor(&group.group),
+        escape(title),
+        outcome_chip(group.judgement.outcome),
+        group.variants,
+        group.guarded_touched,
+        group.naked_touched,
+        group.naked_required
+    );
+    for sentence in &group.judgement.sentences {
+        let class = match group.judgement.outcome {
+            Outcome::Fail => "bad small",
+            Outcome::Pass => "soft small",
+        };
+        let _ = write!(page, "<p class=\"{class}\">{}</p>", escape(sentence));
+    }
+    page.push_str("<div class=\"thumbs\">");
+    for case in cases {
+        let record = certificate.cases.iter().find(|record| record.name == case.name);
+        thumb(page, case, record);
+    }
+    page.push_str("</div>\n");
+}
+
+fn thumb(page: &mut String, case: &CaseResult, record: Option<&CaseRecord>) {
+    let variant = case.name.rsplit('/').next().unwrap_or(&case.name);
+    let _ = write!(page, "<article class=\"card\" id=\"{}\">", case_anchor(&case.name));
+    if let Some(picture) = drawing::thumbnail(case, THUMB) {
+        page.push_str(&svg::element(&picture));
+    }
+    let failed = case.judgement.outcome == Outcome::Fail;
+    let _ = write!(
+        page,
+        "<div class=\"body\"><b>{}</b> {}<div class=\"soft\">{}</div>",
+        escape(variant),
+        if failed { outcome_chip(Outcome::Fail) } else { "" },
+        escape(&words::outcome(case))
+    );
+    if let Some(record) = record.filter(|_| failed) {
+        let sentences = record.sentences.join(" ");
+        let _ = write!(
+            page,
+            "<p class=\"bad\">{}</p><pre>{}</pre>",
+            escape(&sentences),
+            escape(&record.replay)
+        );
+    }
+    page.push_str("</div></article>");
+}
