@@ -6,4 +6,9 @@
 //! `spec/assumptions.md` and looks whether one of them touches a body. It
 //! shares no computation with the kernel and never names its types.
 
+pub mod draw;
+pub mod motion;
+pub mod plane;
+pub mod plant;
 pub mod requirements;
+pub mod world;
