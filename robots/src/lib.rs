@@ -5,6 +5,7 @@
 //! kernel's margins. This crate refuses to guess: every key is required, every
 //! unknown key is an error, and every error says where it is and what to write.
 
+pub mod contract;
 mod error;
 mod kernel_config;
 mod parse;
@@ -13,6 +14,7 @@ mod robot;
 mod rules;
 mod scanner;
 pub mod schema;
+mod sources;
 mod suggest;
 mod template;
 
@@ -26,6 +28,7 @@ pub use robot::{
 };
 pub use scanner::{Encoding, Mask, Scanner};
 
+pub use sources::Sourced;
 pub use template::{key_list, template};
 
 /// Most scanners of one robot.

@@ -3,6 +3,8 @@
 mod robot;
 mod scanner;
 
+pub(crate) use robot::watches_rear;
+
 use crate::error::{RobotError, Source};
 use crate::reader::Places;
 use crate::robot::Values;
