@@ -4,9 +4,11 @@
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 mod args;
+mod certificate;
 mod claims;
 mod explain;
 mod failure;
+mod junit;
 mod new;
 mod picture;
 mod provenance;

@@ -1,4 +1,9 @@
 //! The report: everything the certificate says, drawn.
 
+pub mod cases;
+pub mod claims;
+pub mod contract;
 pub mod drawing;
+pub mod page;
+pub mod robot;
 pub mod words;

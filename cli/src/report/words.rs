@@ -3,16 +3,29 @@
 use crate::picture::Style;
 use haltline_scenarios::result::{CaseResult, RunResult};
 
-/// A snake-case word of the decision as people read it.
+/// A name of the kernel, in whichever case it was written, as `snake_case`.
+#[must_use]
+pub fn snake(word: &str) -> String {
+    let mut out = String::new();
+    for (i, c) in word.chars().enumerate() {
+        if c.is_uppercase() && i > 0 && !out.ends_with('_') {
+            out.push('_');
+        }
+        out.extend(c.to_lowercase());
+    }
+    out
+}
+
+/// A name of the kernel as people read it.
 #[must_use]
 pub fn reason(word: &str) -> String {
-    word.replace('_', " ")
+    snake(word).replace('_', " ")
 }
 
 /// How the path looks under a decision.
 #[must_use]
 pub fn path_style(decision: &str) -> Style {
-    match decision {
+    match snake(decision).as_str() {
         "slow" => Style::PathSlow,
         "brake" => Style::PathBrake,
         "protective_stop" | "emergency_stop" => Style::PathStop,
@@ -70,6 +83,13 @@ pub fn count(n: usize, noun: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_of_the_kernel_read_the_same_in_either_case() {
+        assert_eq!(reason("CriticalZone"), "critical zone");
+        assert_eq!(reason("critical_zone"), "critical zone");
+        assert_eq!(path_style("ProtectiveStop"), Style::PathStop);
+    }
 
     #[test]
     fn lengths_and_counts_read_well() {
