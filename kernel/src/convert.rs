@@ -135,7 +135,8 @@ pub enum BeamEncoding {
 
 /// Beam from a range in metres; total over all bit patterns.
 ///
-/// Ranges round towards the scanner. Below `range_min` is [`Beam::TooNear`],
+/// Ranges round to the nearest millimetre; the guard's rounding term covers the
+/// half millimetre, since neither direction is safe for every robot. Below `range_min` is [`Beam::TooNear`],
 /// beyond `range_max` is [`Beam::NoReturn`]; negative ranges are invalid.
 #[must_use]
 pub fn beam(range_m: f32, encoding: BeamEncoding, range_min: Length, range_max: Length) -> Beam {
@@ -154,7 +155,7 @@ pub fn beam(range_m: f32, encoding: BeamEncoding, range_min: Length, range_max: 
             BeamEncoding::ZeroIsInvalid => Beam::Invalid,
         };
     }
-    let Some(um) = round(metres * 1e6, Round::Down) else {
+    let Some(um) = round(metres * 1e6, Round::Nearest) else {
         return Beam::Invalid;
     };
     if um < 0 {
@@ -164,7 +165,7 @@ pub fn beam(range_m: f32, encoding: BeamEncoding, range_min: Length, range_max: 
     } else if um > i64::from(range_max.as_um()) {
         Beam::NoReturn
     } else {
-        u16::try_from(um.div_euclid(1000)).map_or(Beam::NoReturn, Beam::Hit)
+        u16::try_from(um.saturating_add(500).div_euclid(1000)).map_or(Beam::NoReturn, Beam::Hit)
     }
 }
 

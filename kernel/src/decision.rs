@@ -31,6 +31,10 @@ pub enum Reason {
     GuardLimited,
     /// The guard refused every speed on the list; see [`Decision::verdict`].
     GuardBlocked,
+    /// The desired motion exceeds a speed limit and was scaled on its curvature.
+    LimitExceeded,
+    /// The desired motion reverses although the rear is not watched.
+    ReverseNotAllowed,
     /// Speed and acceleration limits leave no admissible command.
     EmptyWindow,
     /// No command since the last release.

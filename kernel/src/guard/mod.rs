@@ -1,6 +1,23 @@
 //! The guard: certifies that the tube of a motion touches no known point and enters no unknown space.
+//!
+//! Sees geometry, time, odometry and raw scans, nothing else: no grid, no filter,
+//! no planner. Whatever it cannot bound it refuses.
 
-use crate::time::Duration;
+pub mod check;
+pub mod hull;
+pub mod memory;
+pub mod plan;
+pub mod seen;
+pub mod sweep;
+pub mod tube;
+pub mod unknown;
+
+use self::hull::Hull;
+use self::memory::{Memory, MemoryModel};
+use self::tube::{Tube, TubeParameters};
+use crate::arith::to_i32;
+use crate::odometry::{LocalPose, Odometer};
+use crate::time::{Duration, Instant};
 use crate::units::Length;
 
 /// Why a tube was refused.
@@ -79,5 +96,133 @@ impl Budget {
                 .saturating_add(self.spread.as_um())
                 .saturating_add(self.rounding.as_um()),
         )
+    }
+}
+
+/// Where and when a motion is judged, and against what.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a, const S: usize, const B: usize, const M: usize> {
+    /// What is known of the surroundings, refreshed for `pose`.
+    pub memory: &'a Memory<S, B, M>,
+    /// How points age.
+    pub model: &'a MemoryModel,
+    /// The tube's start: the pose of the newest odometry.
+    pub pose: LocalPose,
+    /// Time of that pose.
+    pub stamp: Instant,
+    /// Odometer at that pose.
+    pub odometer: Odometer,
+    /// Margin around the resting footprint in which unknown space does not block, µm.
+    pub skirt_um: u64,
+    /// Whether the robot is leaving rest, so that points inside the start's inflation block
+    /// only motions that bring it nearer.
+    pub leaving: bool,
+}
+
+/// Certifies the tube of `hull` in `scene` when any of its motions may last for `reaction_us`.
+///
+/// # Bound
+/// O(points × samples).
+/// # Source
+/// GUARD-01..05; design §2.
+pub fn certify<const S: usize, const B: usize, const M: usize>(
+    parameters: &TubeParameters,
+    hull: &Hull,
+    reaction_us: u64,
+    scene: &Scene<'_, S, B, M>,
+) -> Verdict {
+    let tube = match Tube::new(parameters, hull, reaction_us) {
+        Ok(tube) => tube,
+        Err(refusal) => return Verdict::without_tube(refusal),
+    };
+    for (slice, cloud) in scene.memory.clouds().enumerate() {
+        if let Some(touch) = check::first_touch(&tube, parameters.footprint, cloud, scene.leaving) {
+            let (stale, gap_mm) = scene.memory.cause(
+                scene.model,
+                (slice, touch.index),
+                scene.stamp,
+                scene.odometer,
+            );
+            let mut budget = touch.budget;
+            budget.charge(scene.model.sensor_um, &stale, gap_mm, touch.point);
+            return Verdict::of(&tube, Some(Refusal::KnownPoint), Some(touch.point), budget);
+        }
+    }
+    let unknown = unknown::entered(
+        &tube,
+        parameters.footprint,
+        scene.skirt_um,
+        &scene.memory.seen,
+        scene.pose,
+    );
+    let refusal = unknown.map(|_| Refusal::UnknownSpace);
+    let mut budget = tube
+        .samples()
+        .last()
+        .map(|last| tube.budget(last))
+        .unwrap_or_default();
+    budget.sensor = Length::from_um(to_i32(scene.model.sensor_um));
+    Verdict::of(&tube, refusal, unknown, budget)
+}
+
+/// Whether the robot has not yet left the points that `leaving` excused.
+#[must_use]
+pub fn still_leaving<const S: usize, const B: usize, const M: usize>(
+    parameters: &TubeParameters,
+    hull: &Hull,
+    reaction_us: u64,
+    memory: &Memory<S, B, M>,
+) -> bool {
+    Tube::new(parameters, hull, reaction_us).is_ok_and(|tube| {
+        memory
+            .clouds()
+            .any(|cloud| check::touches_start(&tube, cloud))
+    })
+}
+
+impl Verdict {
+    const fn without_tube(refusal: Refusal) -> Self {
+        Self {
+            refusal: Some(refusal),
+            point: None,
+            samples: 0,
+            stopping_path: Length::ZERO,
+            stopping_time: Duration::ZERO,
+            budget: Budget {
+                sensor: Length::ZERO,
+                beam_gap: Length::ZERO,
+                odometry: Length::ZERO,
+                moving: Length::ZERO,
+                tracking: Length::ZERO,
+                sampling: Length::ZERO,
+                spread: Length::ZERO,
+                rounding: Length::ZERO,
+            },
+        }
+    }
+
+    fn of(tube: &Tube, refusal: Option<Refusal>, point: Option<BodyPoint>, budget: Budget) -> Self {
+        Self {
+            refusal,
+            point,
+            samples: u16::try_from(tube.samples().len()).unwrap_or(u16::MAX),
+            stopping_path: Length::from_um(to_i32(tube.plan.path)),
+            stopping_time: Duration::from_us(tube.plan.latest),
+            budget,
+        }
+    }
+}
+
+impl Budget {
+    /// Adds the terms of one point.
+    fn charge(&mut self, sensor_um: u64, stale: &memory::Staleness, gap_mm: u16, point: BodyPoint) {
+        let distance = u64::from(point.x_mm.unsigned_abs())
+            .saturating_add(u64::from(point.y_mm.unsigned_abs()));
+        let lever = crate::arith::mul_div_up(stale.turn_urad, distance, 1000);
+        self.sensor = Length::from_um(to_i32(sensor_um));
+        self.beam_gap = Length::from_mm(i32::from(gap_mm));
+        self.odometry = Length::from_um(to_i32(stale.drift_um.saturating_add(lever)));
+        let moving = u64::from(self.moving.as_um().unsigned_abs()).saturating_add(stale.moved_um);
+        self.moving = Length::from_um(to_i32(moving));
     }
 }

@@ -1,0 +1,182 @@
+//! Points against tubes: the inner loop of the guard.
+
+use super::tube::{Sample, Tube, eighths_up};
+use super::{BodyPoint, Budget};
+use crate::geometry::frame::PointMm;
+use crate::geometry::rect::Rect;
+
+/// Own inflation of a point beyond which it blocks whatever tube's bounding box it meets.
+const EXTRA_MAX_MM: u16 = 1_200;
+/// What rounding may do to a distance comparison, eighths of a millimetre.
+///
+/// Small on purpose: it could be spent once per tick. The critical zone bounds what is left.
+const NEARER_SLACK: u64 = 3;
+
+/// A known point in the body frame at the tube's start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CloudPoint {
+    /// Forward, millimetres.
+    pub x_mm: i16,
+    /// Left, millimetres.
+    pub y_mm: i16,
+    /// The point's own inflation (sensor, beam gap, odometry, age), millimetres, rounded up.
+    pub extra_mm: u16,
+    /// Whether this point and the next of the slice bound one surface.
+    pub joined: bool,
+}
+
+impl CloudPoint {
+    /// A point beyond every horizon, in nobody's way.
+    pub const FAR: Self = Self {
+        x_mm: i16::MAX,
+        y_mm: i16::MAX,
+        extra_mm: 0,
+        joined: false,
+    };
+
+    #[inline]
+    fn point(&self) -> PointMm {
+        PointMm {
+            x: i32::from(self.x_mm),
+            y: i32::from(self.y_mm),
+        }
+    }
+}
+
+/// Where a tube was touched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Touch {
+    /// Index of the point in its slice.
+    pub index: usize,
+    /// The point.
+    pub point: BodyPoint,
+    /// Inflation at the touched sample, without the point's own terms.
+    pub budget: Budget,
+}
+
+/// The first point of `cloud` that `tube` touches, if any; with the number of excused points.
+///
+/// With `leaving`, a point inside the first sample (the inflation at the start)
+/// blocks only if a later sample brings the footprint nearer to it.
+/// # Bound
+/// O(points × samples), at most one segment test each.
+/// # Source
+/// GUARD-01, GUARD-02, GUARD-07.
+#[must_use]
+pub fn first_touch(
+    tube: &Tube,
+    footprint: Rect,
+    cloud: &[CloudPoint],
+    leaving: bool,
+) -> Option<Touch> {
+    let mut previous: Option<&CloudPoint> = None;
+    for (index, point) in cloud.iter().enumerate() {
+        let start = match previous {
+            Some(before) if before.joined => before,
+            _ => point,
+        };
+        previous = Some(point);
+        let extra = point.extra_mm.max(start.extra_mm);
+        if !meets_bounds(
+            tube.bounds.grown(i32::from(extra)),
+            start.point(),
+            point.point(),
+        ) {
+            continue;
+        }
+        if let Some(sample) = touched_sample(tube, footprint, start, point, extra, leaving) {
+            return Some(Touch {
+                index,
+                point: BodyPoint {
+                    x_mm: point.x_mm,
+                    y_mm: point.y_mm,
+                },
+                budget: tube.budget(sample),
+            });
+        }
+    }
+    None
+}
+
+/// Whether the bounding box of two points meets `bounds`.
+#[inline]
+fn meets_bounds(bounds: Rect, a: PointMm, b: PointMm) -> bool {
+    a.x.min(b.x) <= bounds.front
+        && a.x.max(b.x) >= bounds.rear.saturating_neg()
+        && a.y.min(b.y) <= bounds.left
+        && a.y.max(b.y) >= bounds.right.saturating_neg()
+}
+
+fn touched_sample<'t>(
+    tube: &'t Tube,
+    footprint: Rect,
+    start: &CloudPoint,
+    end: &CloudPoint,
+    extra_mm: u16,
+    leaving: bool,
+) -> Option<&'t Sample> {
+    let samples = tube.samples();
+    if extra_mm > EXTRA_MAX_MM {
+        return samples.first();
+    }
+    let extra = eighths_up(u64::from(extra_mm).saturating_mul(1000));
+    let excused_beyond = if leaving {
+        start_distance(tube, footprint, start, end, extra)
+    } else {
+        None
+    };
+    for (number, sample) in samples.iter().enumerate() {
+        // A segment is at most as long as the join limit: if one end is out of
+        // reach by the offset bound, the whole segment is.
+        let (Some(a), Some(b)) = (sample.enter(start.point()), sample.enter(end.point())) else {
+            continue;
+        };
+        if !sample.rect.grown(extra).touches(a, b) {
+            continue;
+        }
+        let now = nearest(footprint, a, b);
+        match excused_beyond {
+            Some(before) if number < tube.nominal_from || not_nearer(now, before) => {}
+            _ => return Some(sample),
+        }
+    }
+    None
+}
+
+/// Squared distance of the footprint at the start, if the segment lies inside the start's
+/// inflation but outside the footprint itself.
+fn start_distance(
+    tube: &Tube,
+    footprint: Rect,
+    start: &CloudPoint,
+    end: &CloudPoint,
+    extra: i32,
+) -> Option<u64> {
+    let a = tube.start.enter(start.point())?;
+    let b = tube.start.enter(end.point())?;
+    let distance = nearest(footprint, a, b);
+    (tube.start.rect.grown(extra).touches(a, b) && distance > 0 && !footprint.touches(a, b))
+        .then_some(distance)
+}
+
+fn nearest(footprint: Rect, a: PointMm, b: PointMm) -> u64 {
+    footprint
+        .distance_squared(a)
+        .min(footprint.distance_squared(b))
+}
+
+/// Whether a squared distance is not below another one, but for rounding (eighths of a millimetre).
+fn not_nearer(now: u64, before: u64) -> bool {
+    now.isqrt().saturating_add(NEARER_SLACK) >= before.isqrt()
+}
+
+/// Whether some point lies inside the inflation at the start: then the robot is still leaving.
+#[must_use]
+pub fn touches_start(tube: &Tube, cloud: &[CloudPoint]) -> bool {
+    cloud.iter().any(|point| {
+        let extra = eighths_up(u64::from(point.extra_mm).saturating_mul(1000));
+        tube.start
+            .enter(point.point())
+            .is_some_and(|seen| tube.start.rect.grown(extra).contains(seen))
+    })
+}

@@ -1,0 +1,523 @@
+//! What the guard knows of its surroundings: the newest scans, remembered points, known space.
+//!
+//! A return is never lost but by the rule of MEMORY-02 and MEMORY-03; where a point
+//! must be given up (store full, too old, out of reach) its place becomes unknown,
+//! which counts as occupied.
+
+use super::check::CloudPoint;
+use super::seen::{CELLS, COVER_MM, Rows, Seen, flip_left_of_edge};
+use super::sweep::{Sight, Sweep, SweepPoint, SweepRules};
+use crate::arith::{mul_div_up, mul_micro_up};
+use crate::config::Scanner;
+use crate::geometry::frame::{BodyView, PointMm, polar};
+use crate::input::Beam;
+use crate::odometry::{AnchorShift, LocalPose, Odometer};
+use crate::time::{Duration, Instant};
+use crate::units::BinaryAngle;
+
+/// Rounding of a stored point against a beam, mm.
+const PLACE_ROUNDING_MM: u64 = 3;
+/// Points this near to a remembered one along both axes are merged with it, mm.
+const MERGE_MM: u32 = 4;
+/// What merging adds to the older point's ball: at least `MERGE_MM` times the root of two, mm.
+const MERGE_GROWTH_MM: u16 = 6;
+
+/// A point that the newest scans do not show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Remembered {
+    /// Along x, mm from the anchor.
+    pub x_mm: i16,
+    /// Along y, mm from the anchor.
+    pub y_mm: i16,
+    /// Beam gap when it was seen, plus what merging added, mm.
+    pub gap_mm: u16,
+    /// Consecutive scans that looked past it.
+    pub misses: u8,
+    /// When it was last returned.
+    pub stamp: Instant,
+    /// Odometer when it was last returned.
+    pub odometer: Odometer,
+}
+
+/// How points age.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MemoryModel {
+    /// Scans that must look past a point before it is forgotten.
+    pub clear_after_scans: u8,
+    /// Age at which points and space become unknown.
+    pub age_max: Duration,
+    /// Position error per distance, ppm.
+    pub drift_linear_ppm: u64,
+    /// Heading error per angle, ppm.
+    pub drift_angular_ppm: u64,
+    /// Obstacles' speed bound, µm/s.
+    pub obstacle_speed: u64,
+    /// Largest point error of any scanner, µm.
+    pub sensor_um: u64,
+    /// Point placement rules.
+    pub join_mm: i32,
+}
+
+/// Error of a point seen earlier, split by cause.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Staleness {
+    /// Position error of the odometry since, µm.
+    pub drift_um: u64,
+    /// Heading error of the odometry since, µrad.
+    pub turn_urad: u64,
+    /// Own motion of the obstacle since, µm.
+    pub moved_um: u64,
+}
+
+impl MemoryModel {
+    /// Errors of a point last seen at `stamp` and `then`, at `now` and `odometer`.
+    #[must_use]
+    pub fn staleness(
+        &self,
+        stamp: Instant,
+        then: Odometer,
+        now: Instant,
+        odometer: Odometer,
+    ) -> Staleness {
+        let travelled = odometer.travelled_um.saturating_sub(then.travelled_um);
+        let turned = odometer.turned_urad.saturating_sub(then.turned_urad);
+        let age = now.since(stamp).unwrap_or_default().as_us();
+        Staleness {
+            drift_um: mul_micro_up(self.drift_linear_ppm, travelled),
+            turn_urad: mul_micro_up(self.drift_angular_ppm, turned),
+            moved_um: mul_micro_up(self.obstacle_speed, age),
+        }
+    }
+}
+
+/// The guard's memory: up to `S` scanners of `B` beams and `M` remembered points.
+#[derive(Clone, Debug)]
+pub struct Memory<const S: usize, const B: usize, const M: usize> {
+    sweeps: [Sweep<B>; S],
+    scratch: Sweep<B>,
+    remembered: [Remembered; M],
+    count: usize,
+    /// Known space.
+    pub seen: Seen,
+    clouds: [[CloudPoint; B]; S],
+    remembered_cloud: [CloudPoint; M],
+    overflows: u32,
+    eroded_at: (Instant, Odometer),
+}
+
+impl<const S: usize, const B: usize, const M: usize> Default for Memory<S, B, M> {
+    fn default() -> Self {
+        Self {
+            sweeps: [Sweep::default(); S],
+            scratch: Sweep::default(),
+            remembered: [Remembered::default(); M],
+            count: 0,
+            seen: Seen::default(),
+            clouds: [[CloudPoint::FAR; B]; S],
+            remembered_cloud: [CloudPoint::FAR; M],
+            overflows: 0,
+            eroded_at: (Instant::default(), Odometer::default()),
+        }
+    }
+}
+
+/// A scan ready to be remembered.
+#[derive(Clone, Copy, Debug)]
+pub struct Arrival<'a> {
+    /// Index of the scanner.
+    pub scanner: usize,
+    /// Its configuration.
+    pub setup: &'a Scanner,
+    /// Its beams.
+    pub beams: &'a [Beam],
+    /// Time of the first beam.
+    pub stamp: Instant,
+    /// Where the robot was at the first and the last beam.
+    pub poses: (LocalPose, LocalPose),
+}
+
+impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
+    /// Takes in a scan; returns that it replaces are remembered unless it shows them, too.
+    ///
+    /// # Bound
+    /// O((beams + remembered) × beams through one error disc + beams × remembered).
+    pub fn accept(&mut self, model: &MemoryModel, arrival: Arrival<'_>, odometer: Odometer) {
+        let reach = mount_reach_mm(arrival.setup);
+        let rules = SweepRules {
+            join_mm: model.join_mm,
+            clear_max_mm: COVER_MM.saturating_sub(reach),
+        };
+        self.scratch.place(
+            arrival.setup,
+            rules,
+            arrival.beams,
+            arrival.stamp,
+            arrival.poses,
+            odometer,
+        );
+        let robot = PointMm {
+            x: arrival.poses.1.x_um.div_euclid(1000),
+            y: arrival.poses.1.y_um.div_euclid(1000),
+        };
+        self.seen.follow(robot);
+        self.review(model, robot, odometer);
+        self.keep_replaced(model, arrival.scanner, robot, odometer);
+        if let Some(sweep) = self.sweeps.get_mut(arrival.scanner) {
+            core::mem::swap(sweep, &mut self.scratch);
+            sweep.mark_seen(arrival.setup, rules, &mut self.seen);
+        }
+    }
+
+    /// Drops remembered points that the new scan shows or has looked past often enough.
+    fn review(&mut self, model: &MemoryModel, robot: PointMm, odometer: Odometer) {
+        let now = self.scratch.stamp();
+        let mut index = 0;
+        while index < self.count {
+            let Some(point) = self.remembered.get(index).copied() else {
+                break;
+            };
+            let place = PointMm {
+                x: i32::from(point.x_mm),
+                y: i32::from(point.y_mm),
+            };
+            let stale = model.staleness(point.stamp, point.odometer, now, odometer);
+            let error = place_error_mm(model, &stale, place, robot);
+            let misses = match self.scratch.look_at(place, error) {
+                Sight::Confirmed => None,
+                Sight::LookedPast => Some(point.misses.saturating_add(1))
+                    .filter(|&misses| misses < model.clear_after_scans),
+                Sight::OutOfView => Some(point.misses),
+                Sight::Unclear => Some(0),
+            };
+            let gone = misses.is_none();
+            let lost = !gone && self.is_out_of_reach(model, &point, now, place, robot);
+            if lost {
+                self.seen.forget(place);
+            }
+            if gone || lost {
+                self.remove(index);
+                continue;
+            }
+            if let (Some(slot), Some(misses)) = (self.remembered.get_mut(index), misses) {
+                slot.misses = misses;
+            }
+            index = index.saturating_add(1);
+        }
+    }
+
+    fn is_out_of_reach(
+        &self,
+        model: &MemoryModel,
+        point: &Remembered,
+        now: Instant,
+        place: PointMm,
+        robot: PointMm,
+    ) -> bool {
+        let age = now.since(point.stamp).unwrap_or_default();
+        age > model.age_max || !is_near(place, robot, COVER_MM)
+    }
+
+    fn remove(&mut self, index: usize) {
+        let last = self.count.saturating_sub(1);
+        self.remembered.swap(index.min(last), last);
+        self.count = last;
+    }
+
+    /// Remembers the returns of the scan about to be replaced that the new one does not show.
+    fn keep_replaced(
+        &mut self,
+        model: &MemoryModel,
+        scanner: usize,
+        robot: PointMm,
+        odometer: Odometer,
+    ) {
+        let Some(old) = self.sweeps.get(scanner) else {
+            return;
+        };
+        let (stamp, then) = (old.stamp(), old.odometer());
+        let stale = model.staleness(stamp, then, self.scratch.stamp(), odometer);
+        for index in 0..old.points().len() {
+            let Some(point) = self
+                .sweeps
+                .get(scanner)
+                .and_then(|sweep| sweep.points().get(index).copied())
+            else {
+                break;
+            };
+            let place = PointMm {
+                x: i32::from(point.x_mm),
+                y: i32::from(point.y_mm),
+            };
+            if !is_near(place, robot, COVER_MM) {
+                continue;
+            }
+            let error = place_error_mm(model, &stale, place, robot);
+            let misses = match self.scratch.look_at(place, error) {
+                Sight::Confirmed => continue,
+                Sight::LookedPast => 1,
+                Sight::OutOfView | Sight::Unclear => 0,
+            };
+            if misses < model.clear_after_scans {
+                self.remember(point, misses, stamp, then);
+            }
+        }
+    }
+
+    fn remember(&mut self, point: SweepPoint, misses: u8, stamp: Instant, odometer: Odometer) {
+        let place = PointMm {
+            x: i32::from(point.x_mm),
+            y: i32::from(point.y_mm),
+        };
+        let count = self.count;
+        let near = self.remembered.iter_mut().take(count).find(|known| {
+            i32::from(known.x_mm).abs_diff(place.x) <= MERGE_MM
+                && i32::from(known.y_mm).abs_diff(place.y) <= MERGE_MM
+        });
+        // The older point's ball grows until it contains the newer one's.
+        if let Some(known) = near {
+            let grown = point.gap_mm.saturating_add(MERGE_GROWTH_MM);
+            known.gap_mm = known.gap_mm.max(grown);
+            known.misses = known.misses.min(misses);
+            return;
+        }
+        match self.remembered.get_mut(count) {
+            Some(slot) => {
+                *slot = Remembered {
+                    x_mm: point.x_mm,
+                    y_mm: point.y_mm,
+                    gap_mm: point.gap_mm,
+                    misses,
+                    stamp,
+                    odometer,
+                };
+                self.count = count.saturating_add(1);
+            }
+            None => {
+                self.overflows = self.overflows.saturating_add(1);
+                self.seen.forget(place);
+            }
+        }
+    }
+
+    /// Lets known space age until `now`: obstacles move, odometry drifts, time passes.
+    pub fn age(&mut self, model: &MemoryModel, now: Instant, odometer: Odometer) {
+        let (then, before) = self.eroded_at;
+        let stale = model.staleness(then, before, now, odometer);
+        let lever_mm = u64::from(COVER_MM.unsigned_abs());
+        let turned = mul_div_up(stale.turn_urad, lever_mm, 1000);
+        self.seen.erode(
+            stale
+                .drift_um
+                .saturating_add(stale.moved_um)
+                .saturating_add(turned),
+        );
+        self.seen.expire(now, model.age_max);
+        self.eroded_at = (now, odometer);
+    }
+
+    /// Places all points in the body frame of `pose`, each with its own inflation.
+    ///
+    /// # Bound
+    /// O(points).
+    pub fn refresh(
+        &mut self,
+        model: &MemoryModel,
+        pose: LocalPose,
+        now: Instant,
+        odometer: Odometer,
+    ) {
+        let view = BodyView::new(pose.x_um, pose.y_um, pose.heading);
+        for (sweep, cloud) in self.sweeps.iter().zip(self.clouds.iter_mut()) {
+            let stale = model.staleness(sweep.stamp(), sweep.odometer(), now, odometer);
+            let own = OwnTerms::new(model, &stale);
+            for (point, slot) in sweep.points().iter().zip(cloud.iter_mut()) {
+                *slot = own.place(&view, (point.x_mm, point.y_mm), point.gap_mm, point.joined);
+            }
+        }
+        let remembered = self.remembered.get(..self.count).unwrap_or(&[]);
+        for (point, slot) in remembered.iter().zip(self.remembered_cloud.iter_mut()) {
+            let stale = model.staleness(point.stamp, point.odometer, now, odometer);
+            let own = OwnTerms::new(model, &stale);
+            *slot = own.place(&view, (point.x_mm, point.y_mm), point.gap_mm, false);
+        }
+    }
+
+    /// Takes the operator's word that the disc of `radius_mm` around the robot is free
+    /// (as a regular 16-gon inside it). Points stay what they are.
+    pub fn vouch(&mut self, pose: LocalPose, radius_mm: i32) {
+        let centre = PointMm {
+            x: pose.x_um.div_euclid(1000),
+            y: pose.y_um.div_euclid(1000),
+        };
+        self.seen.follow(centre);
+        let mut rows: Rows = [0; CELLS];
+        let corner = |number: u32| {
+            let spoke = polar(
+                radius_mm.clamp(0, COVER_MM),
+                BinaryAngle::from_counts(number.wrapping_shl(28)),
+            );
+            self.seen.cell_point(PointMm {
+                x: centre.x.saturating_add(spoke.x),
+                y: centre.y.saturating_add(spoke.y),
+            })
+        };
+        for number in 0..16_u32 {
+            flip_left_of_edge(&mut rows, corner(number), corner(number.saturating_add(1)));
+        }
+        self.seen.mark(&rows);
+    }
+
+    /// All known points in the body frame of the last [`Self::refresh`]: scans, then memory.
+    pub fn clouds(&self) -> impl Iterator<Item = &[CloudPoint]> {
+        self.sweeps
+            .iter()
+            .zip(&self.clouds)
+            .map(|(sweep, cloud)| cloud.get(..sweep.points().len()).unwrap_or(&[]))
+            .chain(core::iter::once(
+                self.remembered_cloud.get(..self.count).unwrap_or(&[]),
+            ))
+    }
+
+    /// Causes of the own inflation of point `index` of slice `slice` of [`Self::clouds`].
+    #[must_use]
+    pub fn cause(
+        &self,
+        model: &MemoryModel,
+        (slice, index): (usize, usize),
+        now: Instant,
+        odometer: Odometer,
+    ) -> (Staleness, u16) {
+        if let Some(sweep) = self.sweeps.get(slice) {
+            let gap = sweep.points().get(index).map_or(0, |point| point.gap_mm);
+            (
+                model.staleness(sweep.stamp(), sweep.odometer(), now, odometer),
+                gap,
+            )
+        } else {
+            let point = self.remembered.get(index).copied().unwrap_or_default();
+            (
+                model.staleness(point.stamp, point.odometer, now, odometer),
+                point.gap_mm,
+            )
+        }
+    }
+
+    /// Follows the anchor.
+    pub fn reanchor(&mut self, shift: AnchorShift) {
+        for sweep in &mut self.sweeps {
+            sweep.reanchor(shift);
+        }
+        let moved =
+            |mm: i16, by: i32| i16::try_from(i32::from(mm).saturating_sub(by)).unwrap_or(i16::MAX);
+        for point in self.remembered.iter_mut().take(self.count) {
+            point.x_mm = moved(point.x_mm, shift.x_mm);
+            point.y_mm = moved(point.y_mm, shift.y_mm);
+        }
+        self.seen.reanchor(shift);
+    }
+
+    /// Forgets everything: the past has no relation to the present any more.
+    pub fn clear(&mut self) {
+        self.count = 0;
+        self.seen.clear();
+        for sweep in &mut self.sweeps {
+            *sweep = Sweep::default();
+        }
+    }
+
+    /// The sweep of scanner `scanner`.
+    #[must_use]
+    pub fn sweep(&self, scanner: usize) -> Option<&Sweep<B>> {
+        self.sweeps.get(scanner)
+    }
+
+    /// Points that the newest scans do not show, relative to the anchor.
+    #[must_use]
+    pub fn remembered(&self) -> &[Remembered] {
+        self.remembered.get(..self.count).unwrap_or(&[])
+    }
+
+    /// Number of points whose place became unknown because the store was full.
+    #[must_use]
+    pub const fn overflows(&self) -> u32 {
+        self.overflows
+    }
+}
+
+/// Own inflation of all points seen at one time.
+struct OwnTerms {
+    constant_um: u64,
+    /// Heading error in 2⁻²⁰ per mm of distance, rounded up.
+    lever_q20: u64,
+}
+
+impl OwnTerms {
+    fn new(model: &MemoryModel, stale: &Staleness) -> Self {
+        Self {
+            constant_um: model
+                .sensor_um
+                .saturating_add(stale.drift_um)
+                .saturating_add(stale.moved_um),
+            lever_q20: mul_div_up(stale.turn_urad, 1_048_577, 1_000_000),
+        }
+    }
+
+    #[inline]
+    fn place(&self, view: &BodyView, (x, y): (i16, i16), gap_mm: u16, joined: bool) -> CloudPoint {
+        let seen = view.see(PointMm {
+            x: i32::from(x),
+            y: i32::from(y),
+        });
+        let Some((x_mm, y_mm)) =
+            seen.and_then(|p| Some((i16::try_from(p.x).ok()?, i16::try_from(p.y).ok()?)))
+        else {
+            // A segment to a far point would be longer than the join limit allows.
+            return CloudPoint::FAR;
+        };
+        let distance =
+            u64::from(x_mm.unsigned_abs()).saturating_add(u64::from(y_mm.unsigned_abs()));
+        let lever_mm = (distance.saturating_mul(self.lever_q20) >> 20).saturating_add(1);
+        let extra = self
+            .constant_um
+            .div_ceil(1000)
+            .saturating_add(lever_mm)
+            .saturating_add(u64::from(gap_mm));
+        CloudPoint {
+            x_mm,
+            y_mm,
+            extra_mm: u16::try_from(extra).unwrap_or(u16::MAX),
+            joined,
+        }
+    }
+}
+
+/// Position error of a stored point against a new beam, mm.
+fn place_error_mm(model: &MemoryModel, stale: &Staleness, place: PointMm, robot: PointMm) -> i32 {
+    let distance = place
+        .x
+        .abs_diff(robot.x)
+        .saturating_add(place.y.abs_diff(robot.y));
+    let lever = mul_micro_up(stale.turn_urad, u64::from(distance));
+    let um = model.sensor_um.saturating_add(stale.drift_um);
+    let mm = um
+        .div_ceil(1000)
+        .saturating_add(lever)
+        .saturating_add(PLACE_ROUNDING_MM);
+    i32::try_from(mm).unwrap_or(i32::MAX / 4).min(i32::MAX / 4)
+}
+
+fn is_near(place: PointMm, robot: PointMm, radius_mm: i32) -> bool {
+    place.x.abs_diff(robot.x) <= radius_mm.unsigned_abs()
+        && place.y.abs_diff(robot.y) <= radius_mm.unsigned_abs()
+}
+
+/// Distance of the scanner from the rotation centre, mm, rounded up (sum of components).
+fn mount_reach_mm(scanner: &Scanner) -> i32 {
+    scanner
+        .x
+        .as_um()
+        .saturating_abs()
+        .saturating_add(scanner.y.as_um().saturating_abs())
+        .saturating_add(999)
+        .div_euclid(1000)
+}

@@ -1,0 +1,297 @@
+//! Taking in odometry, scans and commands; everything doubtful becomes a hazard.
+
+use super::{Channel, Kernel, Worst};
+use crate::arith::magnitude;
+use crate::config::Scanner;
+use crate::decision::Reason;
+use crate::geometry::rect::Rect;
+use crate::guard::memory::Arrival;
+use crate::guard::tube::eighths_up;
+use crate::input::{Beam, Command, Odometry, Reading, Scan};
+use crate::time::Instant;
+use crate::watch::{self, Order};
+
+/// A scan that repeats bit by bit after the robot has driven or turned this far is frozen.
+const FROZEN_TRAVEL_UM: u64 = 60_000;
+const FROZEN_TURN_URAD: u64 = 60_000;
+
+impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
+    pub(super) fn take_odometry(
+        &mut self,
+        reading: &Reading<Odometry>,
+        now: Instant,
+        hazard: &mut Worst,
+    ) {
+        let odometry = match reading {
+            Reading::Absent => return,
+            Reading::Malformed => return hazard.add(Reason::OdometryMalformed),
+            Reading::Value(odometry) => *odometry,
+        };
+        let newest = self.track.newest().copied();
+        match watch::order(odometry.stamp, newest.map(|odometry| odometry.stamp), now) {
+            Order::Future => return hazard.add(Reason::OdometryFuture),
+            Order::Older => return hazard.add(Reason::OdometryReordered),
+            Order::Same => return,
+            Order::Newer => {}
+        }
+        let fault = newest
+            .and_then(|before| watch::odometry_fault(self.config.config(), &before, &odometry));
+        if let Some(reason) = fault {
+            hazard.add(reason);
+        }
+        if fault == Some(Reason::OdometryJump) {
+            // Remembered places have lost their relation to the robot.
+            self.memory.clear();
+            self.forget_scans();
+            self.track.restart(odometry);
+        } else if let Some(shift) = self.track.push(odometry) {
+            self.memory.reanchor(shift);
+        }
+        self.note_rest(&odometry);
+    }
+
+    fn forget_scans(&mut self) {
+        for channel in &mut self.channels {
+            channel.accepted = None;
+            channel.pending_stamp = None;
+        }
+    }
+
+    fn note_rest(&mut self, odometry: &Odometry) {
+        let bounds = &self.config.config().tolerances;
+        let rests = magnitude(odometry.twist.linear.as_um_per_s())
+            <= magnitude(bounds.rest_speed.as_um_per_s())
+            && magnitude(odometry.twist.angular.as_urad_per_s())
+                <= magnitude(bounds.rest_angular_speed.as_urad_per_s());
+        self.resting_since = match (rests, self.resting_since) {
+            (false, _) => None,
+            (true, None) => Some(odometry.stamp),
+            (true, since) => since,
+        };
+    }
+
+    /// Whether the robot has rested for the rest time and is told to.
+    pub(super) fn is_at_rest(&self) -> bool {
+        let timing = &self.config.config().timing;
+        let told = self.pipeline.last().twist == crate::input::Twist::default();
+        let measured =
+            self.resting_since
+                .zip(self.track.newest())
+                .is_some_and(|(since, newest)| {
+                    newest
+                        .stamp
+                        .since(since)
+                        .is_some_and(|span| span >= timing.rest)
+                });
+        told && measured
+    }
+
+    pub(super) fn take_scan(
+        &mut self,
+        reading: &Reading<Scan<'_>>,
+        now: Instant,
+        hazard: &mut Worst,
+    ) {
+        let scan = match reading {
+            Reading::Absent => return,
+            Reading::Malformed => return hazard.add(Reason::ScanMalformed),
+            Reading::Value(scan) => scan,
+        };
+        let setup = self.config.config().scanners.get(scan.scanner).copied();
+        let Some(Some(setup)) = setup else {
+            return hazard.add(Reason::ScanMalformed);
+        };
+        let Some(channel) = self.channels.get_mut(scan.scanner) else {
+            return hazard.add(Reason::ScanMalformed);
+        };
+        let ends = scan.stamp.plus(setup.scan_duration);
+        match watch::order(scan.stamp, channel.newest, now) {
+            Order::Future => return hazard.add(Reason::ScanFuture),
+            Order::Older => return hazard.add(Reason::ScanReordered),
+            Order::Same => return,
+            Order::Newer if ends > now => return hazard.add(Reason::ScanFuture),
+            Order::Newer => {}
+        }
+        if !watch::beams_usable(&setup, scan.beams) {
+            return hazard.add(Reason::ScanMalformed);
+        }
+        channel.newest = Some(scan.stamp);
+        channel.note_content(scan.beams, self.track.odometer());
+        if !self.accept(scan.scanner, &setup, scan.beams, scan.stamp)
+            && let Some(channel) = self.channels.get_mut(scan.scanner)
+        {
+            channel.hold(scan.beams, scan.stamp);
+        }
+    }
+
+    /// Places a scan in memory if the odometry covers it.
+    fn accept(&mut self, scanner: usize, setup: &Scanner, beams: &[Beam], stamp: Instant) -> bool {
+        let start = self.track.pose_at(stamp);
+        let end = self.track.pose_at(stamp.plus(setup.scan_duration));
+        let (Some(start), Some(end)) = (start, end) else {
+            return false;
+        };
+        let arrival = Arrival {
+            scanner,
+            setup,
+            beams,
+            stamp,
+            poses: (start, end),
+        };
+        self.memory
+            .accept(self.config.memory(), arrival, self.track.odometer());
+        if let Some(channel) = self.channels.get_mut(scanner) {
+            channel.accepted = Some(stamp);
+        }
+        true
+    }
+
+    /// Takes in scans that waited for the odometry.
+    pub(super) fn settle_pending(&mut self, _hazard: &mut Worst) {
+        for scanner in 0..S {
+            let Some(Some(setup)) = self.config.config().scanners.get(scanner).copied() else {
+                continue;
+            };
+            let Some(channel) = self.channels.get(scanner) else {
+                continue;
+            };
+            let Some(stamp) = channel.pending_stamp else {
+                continue;
+            };
+            let superseded = channel.accepted.is_some_and(|accepted| accepted >= stamp);
+            let beams = channel.pending;
+            let count = usize::from(setup.beams).min(B);
+            let placed = superseded
+                || self.accept(scanner, &setup, beams.get(..count).unwrap_or(&[]), stamp);
+            if let (true, Some(channel)) = (placed, self.channels.get_mut(scanner)) {
+                channel.pending_stamp = None;
+            }
+        }
+    }
+
+    /// Keeps the newest usable command; anything unusable silences the channel until a newer one.
+    pub(super) fn take_command(&mut self, reading: &Reading<Command>, now: Instant) {
+        let command = match reading {
+            Reading::Absent => return,
+            Reading::Malformed => {
+                self.command = None;
+                self.command_fault = Some(Reason::CommandMalformed);
+                return;
+            }
+            Reading::Value(command) => *command,
+        };
+        match watch::order(command.stamp, self.command_stamp, now) {
+            Order::Future => {
+                self.command = None;
+                self.command_fault = Some(Reason::CommandFuture);
+            }
+            Order::Older => {
+                self.command = None;
+                self.command_fault = Some(Reason::CommandReordered);
+            }
+            // The same command again says nothing new, not even that it is still wanted.
+            Order::Same => {}
+            Order::Newer => {
+                self.command = Some(command);
+                self.command_stamp = Some(command.stamp);
+                self.command_fault = None;
+            }
+        }
+    }
+
+    /// Brings all known points and all known space to the pose of the newest odometry.
+    pub(super) fn refresh_memory(&mut self) {
+        let (Some(pose), Some(newest)) = (self.track.pose(), self.track.newest()) else {
+            return;
+        };
+        let (stamp, odometer) = (newest.stamp, self.track.odometer());
+        self.memory.age(self.config.memory(), stamp, odometer);
+        self.memory
+            .refresh(self.config.memory(), pose, stamp, odometer);
+    }
+
+    /// Ages, missing channels, frozen scans, the critical zone, and whether the drive follows.
+    pub(super) fn watch(&self, now: Instant, hazard: &mut Worst) {
+        let config = self.config.config();
+        let timing = &config.timing;
+        for (channel, setup) in self.channels.iter().zip(&config.scanners) {
+            if setup.is_none() {
+                continue;
+            }
+            match channel.accepted {
+                None => hazard.add(Reason::ScanMissing),
+                Some(stamp) => hazard.add_if(
+                    watch::is_stale(stamp, now, timing.scan_age_max),
+                    Reason::ScanStale,
+                ),
+            }
+            hazard.add_if(channel.frozen, Reason::ScanFrozen);
+        }
+        let Some(newest) = self.track.newest() else {
+            return hazard.add(Reason::OdometryMissing);
+        };
+        hazard.add_if(
+            watch::is_stale(newest.stamp, now, timing.odometry_age_max),
+            Reason::OdometryStale,
+        );
+        let since = newest
+            .stamp
+            .minus(timing.tracking_window)
+            .minus(timing.actuation_latency);
+        hazard.add_if(
+            !self
+                .pipeline
+                .explains(newest.twist, since, &config.tolerances),
+            Reason::DriveMismatch,
+        );
+        hazard.add_if(self.point_in_zone(), Reason::CriticalZone);
+    }
+
+    /// Whether a known point lies in the critical zone (ZONE-01).
+    fn point_in_zone(&self) -> bool {
+        let config = self.config.config();
+        let um = |length: crate::units::Length| magnitude(length.as_um());
+        let outline = &config.footprint;
+        let mm = |edge: u64, margin: u64| eighths_up(edge.saturating_add(margin)) >> 3;
+        let zone = Rect {
+            front: mm(um(outline.front), um(config.zone.front)),
+            rear: mm(um(outline.rear), um(config.zone.side)),
+            left: mm(um(outline.left), um(config.zone.side)),
+            right: mm(um(outline.right), um(config.zone.side)),
+        };
+        self.memory.clouds().flatten().any(|point| {
+            zone.contains(crate::geometry::frame::PointMm {
+                x: i32::from(point.x_mm),
+                y: i32::from(point.y_mm),
+            })
+        })
+    }
+}
+
+impl<const B: usize> Channel<B> {
+    /// Compares a scan with its predecessor: real scanners never repeat themselves while moving.
+    fn note_content(&mut self, beams: &[Beam], odometer: crate::odometry::Odometer) {
+        let fingerprint = watch::fingerprint(beams);
+        if fingerprint != self.fingerprint || !watch::has_returns(beams) {
+            self.fingerprint = fingerprint;
+            self.fingerprint_since = odometer;
+            self.frozen = false;
+            return;
+        }
+        let travelled = odometer
+            .travelled_um
+            .saturating_sub(self.fingerprint_since.travelled_um);
+        let turned = odometer
+            .turned_urad
+            .saturating_sub(self.fingerprint_since.turned_urad);
+        self.frozen |= travelled > FROZEN_TRAVEL_UM || turned > FROZEN_TURN_URAD;
+    }
+
+    /// Keeps a scan until the odometry covers it; a newer one replaces it.
+    fn hold(&mut self, beams: &[Beam], stamp: Instant) {
+        for (slot, &beam) in self.pending.iter_mut().zip(beams) {
+            *slot = beam;
+        }
+        self.pending_stamp = Some(stamp);
+    }
+}

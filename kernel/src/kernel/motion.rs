@@ -1,0 +1,202 @@
+//! From a desired motion to a certified one: the speed list, the hull, the ramp.
+
+use super::{Kernel, Outcome};
+use crate::config::Kinematics;
+use crate::decision::{Action, Reason};
+use crate::guard::hull::{Hull, Vertex};
+use crate::guard::{Scene, Verdict, certify, still_leaving};
+use crate::input::{Command, Odometry, Twist};
+use crate::time::{Duration, Instant};
+use crate::units::Curvature;
+use crate::watch::is_stale;
+use crate::window::{self, FACTORS_PERMILLE};
+
+impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
+    /// The curvature-holding ramp to rest.
+    pub(super) fn braking(&mut self, action: Action, reason: Reason, elapsed: Duration) -> Outcome {
+        self.leaving = false;
+        Outcome {
+            action,
+            reason,
+            vertex: window::braked(self.config.config(), self.pipeline.last(), elapsed),
+            verdict: None,
+            factor_permille: 0,
+        }
+    }
+
+    /// Why the newest command cannot be followed, if it cannot.
+    fn command_reason(&self, now: Instant) -> Result<Command, Reason> {
+        if let Some(fault) = self.command_fault {
+            return Err(fault);
+        }
+        let command = self.command.ok_or(Reason::CommandMissing)?;
+        if command.stamp <= self.stop.released {
+            return Err(Reason::CommandMissing);
+        }
+        if is_stale(
+            command.stamp,
+            now,
+            self.config.config().timing.command_age_max,
+        ) {
+            return Err(Reason::CommandStale);
+        }
+        Ok(command)
+    }
+
+    /// Certifies the fastest motion of the list towards the desired one, or brakes.
+    pub(super) fn drive(&mut self, now: Instant, elapsed: Duration) -> Outcome {
+        let desired = self
+            .command_reason(now)
+            .and_then(|command| window::desired(self.config.config(), &command.motion));
+        let (wanted, exceeded) = match desired {
+            Ok(desired) => desired,
+            Err(reason) => return self.braking(Action::Brake, reason, elapsed),
+        };
+        let Some(odometry) = self.track.newest().copied() else {
+            return self.braking(Action::Brake, Reason::OdometryMissing, elapsed);
+        };
+        if wanted.twist == Twist::default() {
+            // To stand still needs no certificate.
+            let mut outcome = self.braking(Action::Pass, Reason::None, elapsed);
+            outcome.vertex.curvature = wanted.curvature;
+            outcome.factor_permille = 1000;
+            return outcome;
+        }
+        self.leaving |= self.is_at_rest();
+        let mut blocked: Option<Verdict> = None;
+        let mut previous: Option<Vertex> = None;
+        for &factor in &FACTORS_PERMILLE {
+            let candidate = self.candidate(wanted, factor, elapsed);
+            let Some(candidate) = candidate else { continue };
+            if previous == Some(candidate) {
+                continue;
+            }
+            previous = Some(candidate);
+            let verdict = self.judge(&odometry, candidate, now);
+            if verdict.refusal.is_none() {
+                return self.accepted(candidate, factor, exceeded, verdict);
+            }
+            blocked.get_or_insert(verdict);
+        }
+        let mut outcome = self.braking(
+            Action::Brake,
+            blocked
+                .as_ref()
+                .map_or(Reason::EmptyWindow, Outcome::blocked),
+            elapsed,
+        );
+        outcome.verdict = blocked;
+        outcome
+    }
+
+    /// The command for one speed factor, if speed and acceleration limits admit one.
+    fn candidate(&self, wanted: Vertex, factor: u16, elapsed: Duration) -> Option<Vertex> {
+        let config = self.config.config();
+        let reference = self.pipeline.last();
+        // A late tick does not earn more acceleration.
+        let step = elapsed.min(config.timing.period);
+        let candidate = window::towards(config, reference, wanted, factor, step);
+        let moves = candidate.twist != Twist::default();
+        (moves && window::admissible(config, reference, candidate, step)).then_some(candidate)
+    }
+
+    fn accepted(
+        &mut self,
+        vertex: Vertex,
+        factor_permille: u16,
+        exceeded: bool,
+        verdict: Verdict,
+    ) -> Outcome {
+        if self.leaving {
+            self.leaving = self.is_still_leaving(vertex);
+        }
+        let (action, reason) = match (factor_permille, exceeded) {
+            (1000, false) => (Action::Pass, Reason::None),
+            (1000, true) => (Action::Slow, Reason::LimitExceeded),
+            _ => (Action::Slow, Reason::GuardLimited),
+        };
+        Outcome {
+            action,
+            reason,
+            vertex,
+            verdict: Some(verdict),
+            factor_permille,
+        }
+    }
+
+    /// The motions that may be executed from the odometry stamp on: measured, in flight, new.
+    fn hull(&self, odometry: &Odometry, candidate: Vertex) -> Hull {
+        let mut hull = Hull::default();
+        hull.push(Vertex {
+            twist: odometry.twist,
+            curvature: odometry.steering.unwrap_or(candidate.curvature),
+        });
+        let since = odometry.stamp.minus(self.window(odometry));
+        let mut previous: Option<Vertex> = None;
+        for sent in self.pipeline.since(since) {
+            if previous != Some(*sent) {
+                hull.push(*sent);
+            }
+            previous = Some(*sent);
+        }
+        if !self.pipeline.reaches(since) {
+            self.push_unknown_past(&mut hull, odometry);
+        }
+        hull.push(candidate);
+        hull
+    }
+
+    /// Before the kernel's first command the drive rested, but its wheels may have stood anywhere.
+    fn push_unknown_past(&self, hull: &mut Hull, odometry: &Odometry) {
+        let bend = match (self.config.config().kinematics, odometry.steering) {
+            (Kinematics::Ackermann { curvature_max, .. }, None) => curvature_max.as_urad_per_m(),
+            _ => 0,
+        };
+        for curvature in [bend, bend.saturating_neg()] {
+            hull.push(Vertex {
+                twist: Twist::default(),
+                curvature: Curvature::from_urad_per_m(curvature),
+            });
+        }
+    }
+
+    /// How far back commands may still determine the motion: a steering sensor makes the
+    /// sweep of the wheels unnecessary.
+    fn window(&self, odometry: &Odometry) -> Duration {
+        match odometry.steering {
+            Some(_) => self.config.config().timing.actuation_latency,
+            None => self.config.pipeline(),
+        }
+    }
+
+    fn judge(&self, odometry: &Odometry, candidate: Vertex, now: Instant) -> Verdict {
+        let age = now.since(odometry.stamp).unwrap_or_default();
+        let scene = Scene {
+            memory: &self.memory,
+            model: self.config.memory(),
+            pose: self.track.pose().unwrap_or_default(),
+            stamp: odometry.stamp,
+            odometer: self.track.odometer(),
+            skirt_um: u64::from(self.config.config().memory.skirt.as_um().unsigned_abs()),
+            leaving: self.leaving,
+        };
+        certify(
+            self.config.tube(),
+            &self.hull(odometry, candidate),
+            self.config.reaction_us(age),
+            &scene,
+        )
+    }
+
+    fn is_still_leaving(&self, candidate: Vertex) -> bool {
+        let Some(odometry) = self.track.newest() else {
+            return false;
+        };
+        still_leaving(
+            self.config.tube(),
+            &self.hull(odometry, candidate),
+            self.config.reaction_us(Duration::ZERO),
+            &self.memory,
+        )
+    }
+}
