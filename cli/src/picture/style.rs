@@ -46,6 +46,8 @@ pub enum Style {
     TermF,
     TermG,
     TermH,
+    TermI,
+    TermJ,
 }
 
 /// Colours as `0xRRGGBB` on light and on dark paper, with the opacity of the fill.
@@ -115,7 +117,7 @@ const fn text(class: &'static str, light: u32, dark: u32, size: f64) -> Look {
 
 impl Style {
     /// Every style, for writing the style sheet.
-    pub const ALL: [Self; 41] = [
+    pub const ALL: [Self; 43] = [
         Self::Paper,
         Self::Frame,
         Self::Grid,
@@ -157,6 +159,8 @@ impl Style {
         Self::TermF,
         Self::TermG,
         Self::TermH,
+        Self::TermI,
+        Self::TermJ,
     ];
 
     /// How it looks. Blue, amber, orange and red tell the verdicts apart for colour-blind readers too.
@@ -267,6 +271,8 @@ impl Style {
             Self::TermE => fill("te", 0x6d_28_d9, 0xb7_94_f6, 1.0),
             Self::TermF => fill("tf", 0x15_80_3d, 0x4c_d2_8a, 1.0),
             Self::TermG => fill("tg", 0xa1_62_07, 0xd9_a4_41, 1.0),
+            Self::TermI => fill("ti", 0xdb_27_77, 0xf4_72_b6, 1.0),
+            Self::TermJ => fill("tj", 0x7c_9a_1e, 0xb5_d3_4f, 1.0),
             Self::TermH => fill("th", 0x6b_72_80, 0x9c_a3_af, 1.0),
             // `Speed`, and nothing else: the other meanings were answered above.
             _ => stroke("speed", 0x25_63_eb, 0x6f_a3_ff, 1.6),

@@ -5,7 +5,8 @@ use crate::picture::{Anchor, Picture, Style};
 use haltline_robots::contract::{Check, Contract, Finding, GapRow, SpeedRow, Term};
 use std::fmt::Write as _;
 
-const TERM_STYLES: [Style; 8] = [
+/// A colour for each term; the same term has the same colour in every bar of the report.
+const TERM_STYLES: [Style; 10] = [
     Style::TermA,
     Style::TermB,
     Style::TermC,
@@ -14,6 +15,8 @@ const TERM_STYLES: [Style; 8] = [
     Style::TermF,
     Style::TermG,
     Style::TermH,
+    Style::TermI,
+    Style::TermJ,
 ];
 
 /// The section.
@@ -24,8 +27,9 @@ pub fn write(page: &mut String, contract: &Contract) {
     );
     checks(page, &contract.checks);
     page.push_str("<div class=\"two\">");
-    speeds(page, &contract.speed_table);
-    gaps(page, &contract.gap_table);
+    let names = term_names(contract);
+    speeds(page, &contract.speed_table, &names);
+    gaps(page, &contract.gap_table, &names);
     page.push_str("</div>\n");
     assumed(page, contract);
 }
@@ -71,7 +75,7 @@ fn short(value: f64) -> String {
     if text == "-0" { "0" } else { text }.to_owned()
 }
 
-fn speeds(page: &mut String, rows: &[SpeedRow]) {
+fn speeds(page: &mut String, rows: &[SpeedRow], names: &[&str]) {
     page.push_str("<div class=\"card\">");
     let bars: Vec<Bar<'_>> = rows
         .iter()
@@ -79,11 +83,12 @@ fn speeds(page: &mut String, rows: &[SpeedRow]) {
             label: format!("{} m/s", short(row.obstacle_speed_mps)),
             result: format!("{} m/s", short(row.top_speed_mps)),
             terms: &row.terms,
-            limit: Some((row.known_m, "known ahead")),
+            limit_m: Some(row.known_m),
         })
         .collect();
     let heading = "Top speed, by speed of obstacles";
-    page.push_str(&svg::element(&stacked(heading, "path and margins ahead of the front edge, m", &bars)));
+    let axis = "path and margins ahead of the front edge; dashes: how far ahead bodies are known";
+    page.push_str(&svg::element(&stacked([heading, axis], &bars, names)));
     page.push_str("<div class=\"body\"><table><tr><th>obstacles up to</th><th>top speed</th><th>decides</th></tr>");
     for row in rows {
         let _ = write!(
@@ -99,7 +104,7 @@ fn speeds(page: &mut String, rows: &[SpeedRow]) {
     page.push_str("</table></div></div>");
 }
 
-fn gaps(page: &mut String, rows: &[GapRow]) {
+fn gaps(page: &mut String, rows: &[GapRow], names: &[&str]) {
     page.push_str("<div class=\"card\">");
     let bars: Vec<Bar<'_>> = rows
         .iter()
@@ -107,11 +112,12 @@ fn gaps(page: &mut String, rows: &[GapRow]) {
             label: format!("{} m/s", short(row.obstacle_speed_mps)),
             result: row.gap_m.map_or_else(|| "none".to_owned(), |gap| format!("{} m", short(gap))),
             terms: &row.terms,
-            limit: None,
+            limit_m: None,
         })
         .collect();
     let heading = "Smallest passable gap, by speed of obstacles";
-    page.push_str(&svg::element(&stacked(heading, "margin on each side of the robot, m", &bars)));
+    let axis = "margin on each side of the robot";
+    page.push_str(&svg::element(&stacked([heading, axis], &bars, names)));
     page.push_str(
         "<div class=\"body\"><table><tr><th>obstacles up to</th><th>gap</th><th>at top speed</th><th>decides</th></tr>",
     );
@@ -131,24 +137,31 @@ fn gaps(page: &mut String, rows: &[GapRow]) {
     page.push_str("</table></div></div>");
 }
 
-struct Bar<'a> {
-    label: String,
-    result: String,
-    terms: &'a [Term],
-    limit: Option<(f64, &'static str)>,
-}
-
-/// Horizontal bars of stacked terms, each term in the same colour in every bar.
-fn stacked(heading: &str, axis: &str, bars: &[Bar<'_>]) -> Picture {
-    const WIDTH: f64 = 620.0;
-    const LEFT: f64 = 68.0;
-    const INNER: f64 = WIDTH - LEFT - 84.0;
-    let mut names: Vec<&str> = Vec::new();
-    for term in bars.iter().flat_map(|bar| bar.terms) {
+/// Names of all terms of both tables, in the order in which they appear.
+fn term_names(contract: &Contract) -> Vec<&'static str> {
+    let speeds = contract.speed_table.iter().flat_map(|row| &row.terms);
+    let gaps = contract.gap_table.iter().flat_map(|row| &row.terms);
+    let mut names = Vec::new();
+    for term in speeds.chain(gaps) {
         if !names.contains(&term.name) {
             names.push(term.name);
         }
     }
+    names
+}
+
+struct Bar<'a> {
+    label: String,
+    result: String,
+    terms: &'a [Term],
+    limit_m: Option<f64>,
+}
+
+/// Horizontal bars of stacked terms, each term in the same colour in every bar.
+fn stacked([heading, axis]: [&str; 2], bars: &[Bar<'_>], names: &[&str]) -> Picture {
+    const WIDTH: f64 = 620.0;
+    const LEFT: f64 = 68.0;
+    const INNER: f64 = WIDTH - LEFT - 84.0;
     let legend_rows = names.len().div_ceil(3);
     let top = 48.0;
     let bottom = top + 34.0 * bars.len() as f64;
@@ -159,7 +172,7 @@ fn stacked(heading: &str, axis: &str, bars: &[Bar<'_>]) -> Picture {
     let sum = |bar: &Bar<'_>| bar.terms.iter().map(|term| term.value_m.max(0.0)).sum::<f64>();
     let longest = bars
         .iter()
-        .map(|bar| sum(bar).max(bar.limit.map_or(0.0, |(limit, _)| limit)))
+        .map(|bar| sum(bar).max(bar.limit_m.unwrap_or(0.0)))
         .fold(1e-3, f64::max);
     for (index, bar) in bars.iter().enumerate() {
         let y = top + 34.0 * index as f64;
@@ -176,12 +189,12 @@ fn stacked(heading: &str, axis: &str, bars: &[Bar<'_>]) -> Picture {
         }
         let end = (x + 8.0).min(WIDTH - 74.0);
         picture.text([end, y + 19.0], Anchor::Start, Style::LabelStrong, bar.result.clone());
-        if let Some((limit, _)) = bar.limit {
-            let at = LEFT + INNER * limit / longest;
+        if let Some(limit_m) = bar.limit_m {
+            let at = LEFT + INNER * limit_m / longest;
             picture.line(vec![[at, y], [at, y + 28.0]], Style::Limit);
         }
     }
-    draw_legend(&mut picture, &names, bottom + 20.0);
+    draw_legend(&mut picture, names, bottom + 20.0);
     picture
 }
 
@@ -240,10 +253,10 @@ mod tests {
                 label: String::new(),
                 result: String::new(),
                 terms,
-                limit: None,
+                limit_m: None,
             })
             .collect();
-        let svg = svg::element(&stacked("h", "a", &bars));
+        let svg = svg::element(&stacked(["h", "a"], &bars, &["sensor", "spread"]));
         // One box for the sensor term and two for the spread, and one of each in the legend.
         assert_eq!(svg.matches("class=\"ta\"").count(), 2, "{svg}");
         assert_eq!(svg.matches("class=\"tb\"").count(), 3, "{svg}");

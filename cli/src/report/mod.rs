@@ -7,3 +7,6 @@ pub mod drawing;
 pub mod page;
 pub mod robot;
 pub mod words;
+
+#[cfg(test)]
+mod tests;

@@ -88,7 +88,7 @@ fn draw_words(picture: &mut Picture, robot: &Robot, view: &View) {
         picture.text([14.0, y], Anchor::Start, Style::Label, text);
         y -= 15.0;
     }
-    let note = "blue: footprint   red dashes: critical zone   green: watched   +: rotation centre";
+    let note = "blue: footprint · red dashes: critical zone · green: watched · cross: rotation centre";
     picture.text([14.0, SIZE[1] - 30.0], Anchor::Start, Style::Label, note);
     let bar = round_step(view.max_m[0] - view.min_m[0], 8.0);
     let (x, y) = (14.0, SIZE[1] - 10.0);
