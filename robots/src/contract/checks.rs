@@ -135,18 +135,18 @@ fn turn_within_view(robot: &Robot, tubes: &dyn Tubes) -> Check {
         );
         return check(Finding::Fails, 1.0, sentence);
     };
-    let view = blind::of_disc(robot, v.footprint.radius_m() + reserve.inflation_m());
+    let blind = blind::of_disc(robot, v.footprint.radius_m() + reserve.inflation_m());
     let passing_s = v.footprint.length_m() / v.limits.speed_forward_mps;
     let remembered = v.memory.age_max_s >= passing_s;
-    let share = view.blind * 100.0;
-    let sentence = if view.blind <= 0.0 {
+    let share = blind * 100.0;
+    let sentence = if blind <= 0.0 {
         "All that turning on the spot sweeps is in view.".to_owned()
     } else if remembered {
         format!(
-            "{share:.0} % of what turning on the spot sweeps is out of view, up to {:.2} m deep: the guard \
-             turns only where memory still holds it as free, at most {:.0} s after it was seen, and with \
-             bodies of 1 m/s about {:.1} s.",
-            view.depth_m, v.memory.age_max_s, view.depth_m
+            "{share:.0} % of what turning on the spot sweeps is out of view: the guard turns only where \
+             memory still holds it as free, at most {:.0} s after it was seen, less where \
+             bodies move.",
+            v.memory.age_max_s
         )
     } else {
         format!(
@@ -156,11 +156,7 @@ fn turn_within_view(robot: &Robot, tubes: &dyn Tubes) -> Check {
             v.memory.age_max_s
         )
     };
-    check(
-        holds_if(view.blind <= 0.0 || remembered),
-        view.blind,
-        sentence,
-    )
+    check(holds_if(blind <= 0.0 || remembered), blind, sentence)
 }
 
 fn reverse_within_view(robot: &Robot) -> Check {
@@ -281,8 +277,8 @@ fn zone_inside_inflation(robot: &Robot, tubes: &dyn Tubes) -> Check {
 }
 
 fn zone_in_view(robot: &Robot) -> Check {
-    let view = blind::of_zone(robot);
-    let whole = view.blind <= 0.0;
+    let blind = blind::of_zone(robot);
+    let whole = blind <= 0.0;
     Check {
         id: "C-ZONE-VIEW",
         title: "Critical zone against the area in view",
@@ -291,7 +287,7 @@ fn zone_in_view(robot: &Robot) -> Check {
         } else {
             Finding::NotCovered
         },
-        value: view.blind,
+        value: blind,
         bound: 0.0,
         unit: "part out of view",
         sentence: if whole {
@@ -300,7 +296,7 @@ fn zone_in_view(robot: &Robot) -> Check {
             format!(
                 "{:.0} % of the critical zone is out of view: what comes up there is not noticed. The \
                  claim covers bodies that a beam returned or that memory holds.",
-                view.blind * 100.0
+                blind * 100.0
             )
         },
     }

@@ -56,13 +56,30 @@ fn largest(terms: &[Term]) -> &'static str {
     terms.iter().max_by(order).map_or("", |term| term.name)
 }
 
-/// The fastest straight drive whose reach is known, with its reserve.
-pub(super) fn top_speed(robot: &Robot, tubes: &dyn Tubes) -> Option<(f64, Reserve)> {
+/// The fastest straight drive whose reach is known.
+struct TopSpeed {
+    speed_mps: f64,
+    reserve: Reserve,
+    /// The guard refuses to look at anything faster, whatever is known.
+    refused_above: bool,
+}
+
+fn top_speed(robot: &Robot, tubes: &dyn Tubes) -> Option<TopSpeed> {
     let (known, _) = known_ahead(robot);
-    speeds(robot).find_map(|speed| {
-        let reserve = tubes.straight(robot, speed)?;
-        (sum(&reserve.reach()) <= known).then_some((speed, reserve))
-    })
+    let mut refused_above = false;
+    for speed_mps in speeds(robot) {
+        match tubes.straight(robot, speed_mps) {
+            Some(reserve) if sum(&reserve.reach()) <= known => {
+                return Some(TopSpeed {
+                    speed_mps,
+                    reserve,
+                    refused_above,
+                });
+            }
+            reserve => refused_above = reserve.is_none(),
+        }
+    }
+    None
 }
 
 /// The row of the speed table for one obstacle speed.
@@ -71,7 +88,7 @@ pub(super) fn speed_row(robot: &Robot, tubes: &dyn Tubes, obstacle_speed_mps: f6
     let (known_m, bound) = known_ahead(robot);
     let with_obstacles = robot.with_obstacle_speed(obstacle_speed_mps);
     let found = with_obstacles.and_then(|robot| top_speed(&robot, tubes));
-    let Some((top_speed_mps, reserve)) = found else {
+    let Some(top) = found else {
         return SpeedRow {
             obstacle_speed_mps,
             top_speed_mps: 0.0,
@@ -86,31 +103,29 @@ pub(super) fn speed_row(robot: &Robot, tubes: &dyn Tubes, obstacle_speed_mps: f6
             ),
         };
     };
-    let terms = reserve.reach();
-    let limited_by_file = top_speed_mps >= limit;
-    let decides = largest(&terms);
-    let why = if limited_by_file {
-        "the limit of the file decides".to_owned()
+    let terms = top.reserve.reach();
+    let limited_by_file = top.speed_mps >= limit;
+    let decides = if limited_by_file {
+        "limit of the file"
+    } else if top.refused_above {
+        "largest tube the guard checks"
     } else {
-        format!("the largest term, {decides}, decides")
+        largest(&terms)
     };
+    let reach_m = sum(&terms);
     SpeedRow {
         obstacle_speed_mps,
-        top_speed_mps,
+        top_speed_mps: top.speed_mps,
         limited_by_file,
-        reach_m: sum(&terms),
-        known_m,
-        decides: if limited_by_file {
-            "limit of the file"
-        } else {
-            decides
-        },
-        sentence: format!(
-            "With bodies of up to {obstacle_speed_mps} m/s the robot may drive {top_speed_mps:.2} m/s: \
-             it needs {:.2} m of the {known_m:.2} m it knows ahead ({bound}); {why}.",
-            sum(&terms)
-        ),
         terms,
+        reach_m,
+        known_m,
+        decides,
+        sentence: format!(
+            "With bodies of up to {obstacle_speed_mps} m/s the robot may drive {:.2} m/s: it needs \
+             {reach_m:.2} m of the {known_m:.2} m it knows ahead ({bound}); what decides: {decides}.",
+            top.speed_mps
+        ),
     }
 }
 
