@@ -152,6 +152,32 @@ fn slewed(from: i32, to: i32, faster: i32, slower: i32) -> i32 {
     to.clamp(low, high)
 }
 
+/// `vertex` scaled down on its curvature until it is no faster than `measured` plus tolerance.
+///
+/// Turning on the spot is judged by its turn rate.
+#[must_use]
+pub fn no_faster<const S: usize>(config: &Config<S>, vertex: Vertex, measured: Twist) -> Vertex {
+    let bounds = &config.tolerances;
+    let (set, is) = if vertex.twist.linear == Speed::ZERO {
+        (
+            vertex.twist.angular.as_urad_per_s(),
+            magnitude(measured.angular.as_urad_per_s())
+                .saturating_add(magnitude(bounds.angular_speed.as_urad_per_s())),
+        )
+    } else {
+        (
+            vertex.twist.linear.as_um_per_s(),
+            magnitude(measured.linear.as_um_per_s())
+                .saturating_add(magnitude(bounds.speed.as_um_per_s())),
+        )
+    };
+    if magnitude(set) <= is {
+        return vertex;
+    }
+    let part = i64::try_from(is).unwrap_or(i64::MAX);
+    scaled(vertex, part, i64::from(set).saturating_abs())
+}
+
 /// The command on the curvature-holding ramp to rest, `step` after `reference`.
 ///
 /// Speed and turn rate reach zero together at the assumed decelerations.

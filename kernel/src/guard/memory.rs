@@ -182,7 +182,7 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
             };
             let stale = model.staleness(point.stamp, point.odometer, now, odometer);
             let error = place_error_mm(model, &stale, place, robot);
-            let misses = match self.scratch.look_at(place, error) {
+            let misses = match self.scratch.look_at(place, error, same_mm(model, &stale)) {
                 Sight::Confirmed => None,
                 Sight::LookedPast => Some(point.misses.saturating_add(1))
                     .filter(|&misses| misses < model.clear_after_scans),
@@ -252,7 +252,7 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
                 continue;
             }
             let error = place_error_mm(model, &stale, place, robot);
-            let misses = match self.scratch.look_at(place, error) {
+            let misses = match self.scratch.look_at(place, error, same_mm(model, &stale)) {
                 Sight::Confirmed => continue,
                 Sight::LookedPast => 1,
                 Sight::OutOfView | Sight::Unclear => 0,
@@ -489,6 +489,13 @@ impl OwnTerms {
             joined,
         }
     }
+}
+
+/// How near a new return must be to take a stored point's place, mm: what one body may differ
+/// by within the sensor's error, less what odometry has blurred.
+fn same_mm(model: &MemoryModel, stale: &Staleness) -> i32 {
+    let um = model.sensor_um.saturating_sub(stale.drift_um);
+    i32::try_from(um / 1000).unwrap_or(0)
 }
 
 /// Position error of a stored point against a new beam, mm.

@@ -39,6 +39,8 @@ pub struct Plan {
     pub curvature_spread: u64,
     /// Turn rate that no curvature of the interval explains, µrad/s.
     pub turn_tolerance: u64,
+    /// Angle the robot may turn on after v came to rest by its own ramp, µrad.
+    pub after_turn: u64,
     /// Longest path, µm; zero when turning on the spot.
     pub path: u64,
     /// Largest angle turned to the left on the spot, µrad.
@@ -93,21 +95,20 @@ impl Plan {
         let creep = magnitude(slowest).max(magnitude(fastest));
         let speed = add(dynamics.speed_tolerance, creep);
         let own = dynamics.turn_tolerance;
-        // w T + w²/(2β) + tol²/(2β)
+        // Both rates reach zero together, so a creeping v may prolong the turn:
+        // w (T + max(w/β, v/b)/2) + tol²/(2β)
+        let roll_out = mul_div_up(speed, 1_000_000, dynamics.braking);
         let turned = |rate: u64| {
             let w = add(rate, own);
+            let stop = mul_div_up(w, 1_000_000, dynamics.angular_braking).max(roll_out);
             let twice = dynamics.angular_braking.saturating_mul(2);
             add(
-                mul_micro_up(w, reaction),
-                add(mul_div_up(w, w, twice), mul_div_up(own, own, twice)),
+                mul_micro_up(w, add(reaction, stop.div_ceil(2))),
+                mul_div_up(own, own, twice),
             )
         };
         let rate = add(hull.turn_max(), own);
-        let stop = mul_div_up(rate, 1_000_000, dynamics.angular_braking).max(mul_div_up(
-            speed,
-            1_000_000,
-            dynamics.braking,
-        ));
+        let stop = mul_div_up(rate, 1_000_000, dynamics.angular_braking).max(roll_out);
         let latest = add(reaction, stop);
         Self {
             direction: 1,
@@ -132,10 +133,7 @@ impl Plan {
         let (turn_tolerance, rate) = if dynamics.steered {
             (slip, add(mul_micro_up(bend, speed), slip))
         } else {
-            let residual = add(
-                hull.curvature_residual(interval),
-                ramp_residual(dynamics, hull),
-            );
+            let residual = hull.curvature_residual(interval);
             (add(slip, residual), add(hull.turn_max(), slip))
         };
         let stop = mul_div_up(speed, 1_000_000, dynamics.braking).max(mul_div_up(
@@ -151,15 +149,19 @@ impl Plan {
             curvature: nominal,
             curvature_spread: bend_difference(interval, nominal),
             turn_tolerance,
+            after_turn: if dynamics.separate_ramps && !dynamics.steered {
+                mul_div_up(rate, rate, dynamics.angular_braking.saturating_mul(2))
+            } else {
+                0
+            },
             path: mul_micro_up(speed, add(reaction, stop.div_ceil(2))),
             reaction,
             latest,
             constant_spread: if may_roll_back {
-                let coast = add(
-                    reaction,
-                    mul_div_up(speed_tolerance, 1_000_000, dynamics.braking),
+                let stop = mul_div_up(speed_tolerance, 1_000_000, dynamics.braking).max(
+                    mul_div_up(turn_tolerance, 1_000_000, dynamics.angular_braking),
                 );
-                mul_micro_up(speed_tolerance, coast)
+                mul_micro_up(speed_tolerance, add(reaction, stop))
             } else {
                 0
             },
@@ -181,7 +183,7 @@ impl Plan {
         hull.curvature_interval()
     }
 
-    /// C = max(1/b, k/β) in 10⁻⁶ s²/m, and tol_ω/β + tol_v/b in µs.
+    /// C = max(1/b, k/β) in 10⁻⁶ s²/m, and tol_ω/β + C·tol_v in µs.
     fn late_terms(
         dynamics: &Dynamics,
         bend: u64,
@@ -194,21 +196,26 @@ impl Plan {
         let straight = div_up(1_000_000_000_000, dynamics.braking);
         let bent = mul_div_up(bend, 1_000_000, dynamics.angular_braking);
         let offset = mul_div_up(turn_tolerance, 1_000_000, dynamics.angular_braking);
-        // Rolling back within the speed tolerance takes time without path.
-        let back = mul_div_up(speed_tolerance, 1_000_000, dynamics.braking);
-        Some((straight.max(bent), add(offset, back)))
+        // Rolling back within the speed tolerance takes time C·tol_v without path.
+        let slope = straight.max(bent);
+        let back = mul_micro_up(slope, speed_tolerance);
+        Some((slope, add(offset, back)))
     }
 
     /// Inflation by spread of speed and curvature at arc length `s` (µm), in µm.
     ///
-    /// `dk (s²/2 + ρ s) + tol_ω t_max (s + ρ) + constant`: convex and nondecreasing in `s`.
+    /// `dk (s²/2 + ρ s) + (tol_ω t_max + after_turn) (s + ρ) + constant`: convex and
+    /// nondecreasing in `s`.
     #[must_use]
     pub fn spread(&self, path: u64, corner: u64) -> u64 {
         if self.path == 0 {
             return self.constant_spread;
         }
         let lever = add(path, corner);
-        let turn = mul_micro_up(self.turn_tolerance, self.latest);
+        let turn = add(
+            mul_micro_up(self.turn_tolerance, self.latest),
+            self.after_turn,
+        );
         let bent = mul_micro_up(
             mul_micro_up(self.curvature_spread, path),
             add(path.div_ceil(2), corner),
@@ -229,25 +236,6 @@ impl Plan {
         let root = crate::arith::sqrt_up(squared);
         self.latest.min(add(self.reaction, add(root, offset)))
     }
-}
-
-/// What separate ramps leave of ω when v has come to rest first: max(|ω| − β v/b), µrad/s.
-fn ramp_residual(dynamics: &Dynamics, hull: &Hull) -> u64 {
-    if !dynamics.separate_ramps {
-        return 0;
-    }
-    hull.vertices()
-        .map(|vertex| {
-            let speed = u64::from(vertex.twist.linear.as_um_per_s().max(0).unsigned_abs());
-            let shed = dynamics
-                .angular_braking
-                .saturating_mul(speed)
-                .checked_div(dynamics.braking)
-                .unwrap_or(0);
-            magnitude(vertex.twist.angular.as_urad_per_s()).saturating_sub(shed)
-        })
-        .max()
-        .unwrap_or(0)
 }
 
 /// Largest distance of the interval's ends from `nominal`.

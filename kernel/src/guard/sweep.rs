@@ -301,12 +301,14 @@ impl<const B: usize> Sweep<B> {
 
     /// What this scan says about `place` (mm from the anchor) known to within `error_mm`.
     ///
+    /// A return within `same_mm` of it takes its place over.
+    ///
     /// # Bound
     /// O(beams through the error disc).
     /// # Source
     /// MEMORY-02, MEMORY-03.
     #[must_use]
-    pub fn look_at(&self, place: PointMm, error_mm: i32) -> Sight {
+    pub fn look_at(&self, place: PointMm, error_mm: i32, same_mm: i32) -> Sight {
         // The scanner moves while it scans: first guess the beam, then use its own origin.
         let guess = self.ray_towards(place, self.count / 2);
         let ray = self.ray_towards(place, guess.index);
@@ -332,7 +334,7 @@ impl<const B: usize> Sweep<B> {
             };
             if let Beam::Hit(range) = value {
                 let difference = i32::from(range).saturating_sub(ray.range_mm);
-                confirmed |= difference.abs() <= error_mm;
+                confirmed |= difference.abs() <= same_mm;
             }
             if within_disc(beam) {
                 inside = inside.saturating_add(1);
@@ -341,7 +343,7 @@ impl<const B: usize> Sweep<B> {
         }
         let whole = (low >= 0 || !within_disc(-1))
             && (high <= last || !within_disc(last.saturating_add(1)));
-        if confirmed || self.bridged(ray.beam, ray.range_mm, error_mm) {
+        if confirmed || self.bridged(ray.beam, ray.range_mm, same_mm) {
             Sight::Confirmed
         } else if past && inside > 0 && whole {
             Sight::LookedPast

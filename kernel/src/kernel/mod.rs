@@ -36,7 +36,10 @@ pub struct Kernel<const S: usize, const B: usize, const M: usize> {
     command_fault: Option<Reason>,
     /// Since when the odometry has shown rest.
     resting_since: Option<Instant>,
+    /// Moving off from rest: what stood inside the inflation then is excused (GUARD-07).
     leaving: bool,
+    /// The last set point lay on a braking ramp.
+    is_braking: bool,
     last_tick: Option<Instant>,
 }
 
@@ -104,6 +107,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             command_fault: None,
             resting_since: None,
             leaving: false,
+            is_braking: false,
             last_tick: None,
         })
     }

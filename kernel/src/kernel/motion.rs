@@ -13,12 +13,35 @@ use crate::window::{self, FACTORS_PERMILLE};
 
 impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     /// The curvature-holding ramp to rest.
+    ///
+    /// A set point holds until the next tick, which may come late, so it is the ramp's value
+    /// at the decision's expiry. The ramp starts no faster than the robot is measured: a drive
+    /// still accelerating towards an older set point must fall from the first braking tick on.
+    /// # Source
+    /// BRAKE-05, BRAKE-06.
     pub(super) fn braking(&mut self, action: Action, reason: Reason, elapsed: Duration) -> Outcome {
+        let config = self.config.config();
+        let timing = &config.timing;
+        let last = self.pipeline.last();
+        let vertex = if self.is_braking {
+            window::braked(config, last, elapsed)
+        } else {
+            let start = match self.track.newest() {
+                Some(odometry) => window::no_faster(config, last, odometry.twist),
+                None => last,
+            };
+            window::braked(
+                config,
+                start,
+                timing.period.plus(timing.jitter).max(elapsed),
+            )
+        };
         self.leaving = false;
+        self.is_braking = true;
         Outcome {
             action,
             reason,
-            vertex: window::braked(self.config.config(), self.pipeline.last(), elapsed),
+            vertex,
             verdict: None,
             factor_permille: 0,
         }
@@ -107,6 +130,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         exceeded: bool,
         verdict: Verdict,
     ) -> Outcome {
+        self.is_braking = false;
         if self.leaving {
             self.leaving = self.is_still_leaving(vertex);
         }
