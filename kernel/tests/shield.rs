@@ -1,0 +1,61 @@
+//! The kernel in shield mode, driven through its public door in a small exact world.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+mod common;
+
+use common::{Room, config};
+use haltline::decision::{Action, Reason, StopStatus};
+
+#[test]
+fn starts_latched_and_runs_after_a_reset_at_rest() {
+    let mut room = Room::new((-3.0, 6.0), (-2.0, 2.0), config());
+    for _ in 0..20 {
+        let decision = room.tick(Some((0.5, 0.0)), false);
+        assert_eq!(decision.status, StopStatus::Latched, "{decision:?}");
+        assert!(room.twist == [0.0, 0.0]);
+    }
+    let decision = room.tick(Some((0.5, 0.0)), true);
+    assert_eq!(decision.status, StopStatus::Running, "{decision:?}");
+    // The command of the reset's own tick is dead; the next one counts.
+    assert!(room.twist == [0.0, 0.0]);
+    let decision = room.tick(Some((0.5, 0.0)), false);
+    assert_eq!(decision.action, Action::Pass, "{decision:?}");
+    assert!(room.twist[0] > 0.0);
+}
+
+#[test]
+fn drives_up_to_a_wall_and_stops_before_it() {
+    let mut room = Room::new((-3.0, 4.0), (-2.0, 2.0), config());
+    let _ = room.start();
+    let mut fastest: f64 = 0.0;
+    let mut last = room.tick(Some((1.0, 0.0)), false);
+    for tick in 0..400 {
+        last = room.tick(Some((1.0, 0.0)), false);
+        fastest = fastest.max(room.twist[0]);
+        assert!(room.pose[0] + 0.6 < 4.0, "tick {tick}: {last:?}");
+    }
+    assert!(fastest > 0.6, "fastest {fastest}");
+    assert!(room.twist[0].abs() < 0.02, "{last:?} at {:?}", room.pose);
+    assert!(
+        matches!(last.reason, Reason::GuardBlocked | Reason::GuardLimited),
+        "{last:?}"
+    );
+    let gap = 4.0 - room.pose[0] - 0.6;
+    assert!(gap < 0.12, "stops needlessly far away: {gap}");
+}
+
+#[test]
+fn turns_on_the_spot_where_there_is_room_and_not_where_there_is_none() {
+    let mut room = Room::new((-3.0, 3.0), (-2.0, 2.0), config());
+    let _ = room.start();
+    for _ in 0..100 {
+        let _ = room.tick(Some((0.0, 0.5)), false);
+    }
+    assert!(room.pose[2] > 1.0, "{:?}", room.pose);
+    // 0.5 m to each side: the corners (0.73 m) do not pass.
+    let mut narrow = Room::new((-3.0, 3.0), (-0.5, 0.5), config());
+    let _ = narrow.start();
+    for _ in 0..200 {
+        let _ = narrow.tick(Some((0.0, 0.5)), false);
+    }
+    assert!(narrow.pose[2] < 0.2, "{:?}", narrow.pose);
+}
