@@ -20,6 +20,8 @@ mod template;
 
 use std::path::Path;
 
+use haltline::checked::KernelConfig;
+
 pub use error::RobotError;
 use error::Source;
 pub use robot::{
@@ -90,6 +92,10 @@ impl Robot {
                 "write a value nearer to that of a real robot",
             )
         })?;
+        if let Err(error) = KernelConfig::new(config, BEAMS) {
+            let (path, problem, advice) = rules::of_kernel(error);
+            return Err(source.error(&places.of(&path), problem, advice));
+        }
         Ok(Self {
             name,
             file: file_name.to_owned(),

@@ -1,6 +1,6 @@
 //! The checks, one function each.
 
-use super::tables::{CREEP_MPS, known_ahead};
+use super::tables::{known_ahead, obstructs, slowest_mps, space_ahead_m};
 use super::tubes::{Tubes, hold_s};
 use super::{Check, Finding, blind};
 use crate::{Kinematics, Robot, Silence};
@@ -32,38 +32,42 @@ fn holds_if(condition: bool) -> Finding {
 fn stop_within_view(robot: &Robot, tubes: &dyn Tubes) -> Check {
     let speed = robot.values.limits.speed_forward_mps;
     let (bound, by) = known_ahead(robot);
-    let reach = tubes.straight(robot, speed).map(|reserve| {
-        let path = reserve.reaction_m + reserve.braking_m;
-        (path + reserve.inflation_m(), path)
-    });
-    let (value, sentence) = match reach {
-        None => (
-            f64::INFINITY,
-            format!(
+    let lower = "lower speed_forward_mps to the top speed of the table";
+    let (finding, value, sentence) = match tubes.straight(robot, speed) {
+        None => {
+            let sentence = format!(
                 "The guard refuses {speed:.2} m/s whatever it sees, because the tube is longer or wider \
-                 than it can check; lower speed_forward_mps to the top speed of the table."
-            ),
-        ),
-        Some((value, path)) if value <= bound => (
-            value,
-            format!(
+                 than it can check; {lower}."
+            );
+            (Finding::Fails, f64::INFINITY, sentence)
+        }
+        Some(reserve) => {
+            let path = reserve.reaction_m + reserve.braking_m;
+            let value = path + reserve.inflation_m();
+            let needs = format!(
                 "At {speed:.2} m/s the robot stops within {path:.2} m and needs {value:.2} m ahead of its \
-                 front edge; bodies are known up to {bound:.2} m ({by})."
-            ),
-        ),
-        Some((value, path)) => (
-            value,
-            format!(
-                "At {speed:.2} m/s the robot stops within {path:.2} m and needs {value:.2} m ahead of its \
-                 front edge, but bodies are known only up to {bound:.2} m ({by}); lower \
-                 speed_forward_mps to the top speed of the table."
-            ),
-        ),
+                 front edge"
+            );
+            match obstructs(robot, &reserve) {
+                None => {
+                    let sentence = format!("{needs}; bodies are known up to {bound:.2} m ({by}).");
+                    (Finding::Holds, value, sentence)
+                }
+                Some(obstacle) => {
+                    let sentence = format!(
+                        "{needs}, but bodies are known up to {bound:.2} m and space up to {:.2} m \
+                         ({obstacle}); {lower}.",
+                        space_ahead_m(robot)
+                    );
+                    (Finding::Fails, value, sentence)
+                }
+            }
+        }
     };
     Check {
         id: "C-STOP",
         title: "Stopping distance at top speed against what the scanners know",
-        finding: holds_if(value <= bound),
+        finding,
         value,
         bound,
         unit: "m",
@@ -79,6 +83,7 @@ fn stop_in_the_open(robot: &Robot, tubes: &dyn Tubes) -> Check {
         .filter(|s| s.sees(s.x_m + s.range_max_m * 0.5, s.y_m));
     let clear = ahead.map(|s| s.x_m + s.no_return_clear_m - v.footprint.front_m);
     let bound = clear.fold(0.0, f64::max);
+    // Sensor and obstacle terms do not count against unknown space.
     let needed = tubes.straight(robot, v.limits.speed_forward_mps);
     let value = needed.map_or(f64::INFINITY, |r| {
         r.reaction_m + r.braking_m + r.inflation_m()
@@ -247,7 +252,7 @@ fn speed_stopped_within(robot: &Robot, margin_m: f64) -> f64 {
 
 fn zone_inside_inflation(robot: &Robot, tubes: &dyn Tubes) -> Check {
     let (zone, width) = (robot.values.zone, robot.values.footprint.width_m());
-    let creeping = tubes.straight(robot, CREEP_MPS.min(robot.values.limits.speed_forward_mps));
+    let creeping = tubes.straight(robot, slowest_mps(robot));
     let bound = creeping.as_ref().map_or(0.0, super::Reserve::inflation_m);
     let alone = speed_stopped_within(robot, zone.front_m);
     let fits = zone.side_m <= bound;

@@ -7,6 +7,8 @@
 
 mod blind;
 mod checks;
+mod kernel_tubes;
+mod model;
 mod tables;
 mod tubes;
 
@@ -14,7 +16,9 @@ use serde::Serialize;
 
 use crate::Robot;
 
-pub use tubes::{ModelTubes, Reserve, Term, Tubes};
+pub use kernel_tubes::KernelTubes;
+pub use model::ModelTubes;
+pub use tubes::{Reserve, Term, Tubes};
 
 /// Obstacle speeds of the tables, m/s: static, crossing (Loh 2018, 6.2.2), half of it, and a
 /// person's walk (ISO 13855).
@@ -74,6 +78,8 @@ pub struct SpeedRow {
     pub reach_m: f64,
     /// How far ahead of the front edge bodies are known, metres.
     pub known_m: f64,
+    /// How far ahead of the front edge the kernel's memory can hold space as free, metres.
+    pub space_m: f64,
     /// Name of the largest term, or what else decides.
     pub decides: &'static str,
     /// The row in words.
@@ -120,7 +126,7 @@ impl Contract {
     /// The contract of `robot` with the kernel's own tubes.
     #[must_use]
     pub fn of(robot: &Robot) -> Self {
-        Self::with_tubes(robot, &ModelTubes)
+        Self::with_tubes(robot, &KernelTubes)
     }
 
     /// The contract of `robot` when the guard reserves what `tubes` says.

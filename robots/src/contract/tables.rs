@@ -7,8 +7,14 @@ use crate::Robot;
 /// Speeds are tried in steps of this, m/s.
 const STEP_MPS: f64 = 0.01;
 
-/// Slower than this is not driving: the narrowest gap is looked for from here up, m/s.
-pub(super) const CREEP_MPS: f64 = 0.05;
+/// Slower than this is not driving, m/s.
+const CREEP_MPS: f64 = 0.05;
+
+/// The slowest drive looked at, m/s: within the speed tolerance the guard cannot tell driving
+/// from turning on the spot.
+pub(super) fn slowest_mps(robot: &Robot) -> f64 {
+    CREEP_MPS.max(robot.values.tolerances.speed_mps + STEP_MPS)
+}
 
 /// How far ahead of the front edge bodies of the least width are known, metres; with what bounds it.
 ///
@@ -37,11 +43,41 @@ pub(super) fn known_ahead(robot: &Robot) -> (f64, &'static str) {
     best
 }
 
-/// Speeds up to the file's limit: the limit itself, then whole steps downwards.
+/// How far ahead of the front edge the kernel's memory can hold space as free, metres.
+pub(super) fn space_ahead_m(robot: &Robot) -> f64 {
+    let v = &robot.values;
+    let cover = f64::from(haltline::guard::seen::COVER_MM) / 1000.0;
+    // A scanner's rays are believed up to the window less the distance of its mounting.
+    let reach = v
+        .scanners
+        .iter()
+        .map(|s| cover - s.x_m.abs() - s.y_m.abs() + s.x_m);
+    reach.fold(0.0, f64::max).min(cover) - v.footprint.front_m
+}
+
+/// What stands against a reserve: nothing, what is known of bodies, or of free space.
+pub(super) fn obstructs(robot: &Robot, reserve: &Reserve) -> Option<&'static str> {
+    let (known, bound) = known_ahead(robot);
+    if sum(&reserve.reach()) > known {
+        Some(bound)
+    } else if reserve.into_space_m() > space_ahead_m(robot) {
+        Some(MEMORY_WINDOW)
+    } else {
+        None
+    }
+}
+
+/// Name of the bound that the kernel's window of known space sets.
+const MEMORY_WINDOW: &str = "window of known space";
+/// Name of the bound that the guard's largest tube sets.
+const LARGEST_TUBE: &str = "largest tube the guard checks";
+
+/// Speeds worth driving: the file's limit, then whole steps down to the slowest.
 fn speeds(robot: &Robot) -> impl Iterator<Item = f64> {
-    let limit = robot.values.limits.speed_forward_mps;
+    let (limit, slowest) = (robot.values.limits.speed_forward_mps, slowest_mps(robot));
     let steps = (limit / STEP_MPS).ceil() as u32;
     let below = (1..steps).rev().map(|step| f64::from(step) * STEP_MPS);
+    let below = below.take_while(move |speed| *speed >= slowest);
     std::iter::once(limit).chain(below)
 }
 
@@ -56,77 +92,80 @@ fn largest(terms: &[Term]) -> &'static str {
     terms.iter().max_by(order).map_or("", |term| term.name)
 }
 
-/// The fastest straight drive whose reach is known.
+/// The fastest straight drive for which enough is known.
 struct TopSpeed {
     speed_mps: f64,
     reserve: Reserve,
-    /// The guard refuses to look at anything faster, whatever is known.
-    refused_above: bool,
+    /// What stands against anything faster, unless the file's limit does.
+    above: Option<&'static str>,
 }
 
-fn top_speed(robot: &Robot, tubes: &dyn Tubes) -> Option<TopSpeed> {
-    let (known, _) = known_ahead(robot);
-    let mut refused_above = false;
+fn top_speed(robot: &Robot, tubes: &dyn Tubes) -> Result<TopSpeed, &'static str> {
+    let mut above = None;
     for speed_mps in speeds(robot) {
-        match tubes.straight(robot, speed_mps) {
-            Some(reserve) if sum(&reserve.reach()) <= known => {
-                return Some(TopSpeed {
+        let Some(reserve) = tubes.straight(robot, speed_mps) else {
+            above = Some(LARGEST_TUBE);
+            continue;
+        };
+        match obstructs(robot, &reserve) {
+            None => {
+                return Ok(TopSpeed {
                     speed_mps,
                     reserve,
-                    refused_above,
+                    above,
                 });
             }
-            reserve => refused_above = reserve.is_none(),
+            obstacle => above = obstacle,
         }
     }
-    None
+    Err(above.unwrap_or(LARGEST_TUBE))
 }
 
 /// The row of the speed table for one obstacle speed.
 pub(super) fn speed_row(robot: &Robot, tubes: &dyn Tubes, obstacle_speed_mps: f64) -> SpeedRow {
-    let limit = robot.values.limits.speed_forward_mps;
     let (known_m, bound) = known_ahead(robot);
-    let with_obstacles = robot.with_obstacle_speed(obstacle_speed_mps);
-    let found = with_obstacles.and_then(|robot| top_speed(&robot, tubes));
-    let Some(top) = found else {
-        return SpeedRow {
-            obstacle_speed_mps,
-            top_speed_mps: 0.0,
-            limited_by_file: false,
-            terms: Vec::new(),
-            reach_m: 0.0,
-            known_m,
-            decides: bound,
-            sentence: format!(
-                "With bodies of up to {obstacle_speed_mps} m/s the robot may not drive at all: even \
-                 creeping needs more than the {known_m:.2} m it knows ahead ({bound})."
-            ),
-        };
-    };
-    let terms = top.reserve.reach();
-    let limited_by_file = top.speed_mps >= limit;
-    let decides = if limited_by_file {
-        "limit of the file"
-    } else if top.refused_above {
-        "largest tube the guard checks"
-    } else {
-        largest(&terms)
-    };
-    let reach_m = sum(&terms);
-    SpeedRow {
+    let mut row = SpeedRow {
         obstacle_speed_mps,
-        top_speed_mps: top.speed_mps,
-        limited_by_file,
-        terms,
-        reach_m,
+        top_speed_mps: 0.0,
+        limited_by_file: false,
+        terms: Vec::new(),
+        reach_m: 0.0,
         known_m,
-        decides,
-        sentence: format!(
-            "With bodies of up to {obstacle_speed_mps} m/s the robot may drive {:.2} m/s: it needs \
-             {reach_m:.2} m of the {known_m:.2} m it knows ahead ({bound}); what decides: {decides}.",
-            top.speed_mps
-        ),
-    }
+        space_m: space_ahead_m(robot),
+        decides: bound,
+        sentence: String::new(),
+    };
+    let found = match robot.with_obstacle_speed(obstacle_speed_mps) {
+        Some(robot) => top_speed(&robot, tubes),
+        None => Err(bound),
+    };
+    let top = match found {
+        Ok(top) => top,
+        Err(obstacle) => {
+            row.decides = obstacle;
+            row.sentence = format!(
+                "With bodies of up to {obstacle_speed_mps} m/s the robot may not drive at all, however \
+                 slowly ({obstacle}); it knows {known_m:.2} m ahead."
+            );
+            return row;
+        }
+    };
+    row.terms = top.reserve.reach();
+    row.reach_m = sum(&row.terms);
+    row.top_speed_mps = top.speed_mps;
+    row.limited_by_file = top.above.is_none();
+    row.decides = match top.above {
+        None => "limit of the file",
+        Some(LARGEST_TUBE) => LARGEST_TUBE,
+        Some(MEMORY_WINDOW) => MEMORY_WINDOW,
+        Some(_) => largest(&row.terms),
+    };
+    row.sentence = format!(
+        "With bodies of up to {obstacle_speed_mps} m/s the robot may drive {:.2} m/s: it needs {:.2} m \
+         of the {known_m:.2} m it knows ahead ({bound}); what decides: {}.",
+        row.top_speed_mps, row.reach_m, row.decides
+    );
+    row
 }
 
 /// The row of the gap table for the obstacle speed of `row`.
@@ -136,7 +175,7 @@ pub(super) fn gap_row(robot: &Robot, tubes: &dyn Tubes, row: &SpeedRow) -> GapRo
     let gap = |reserve: &Reserve| width_m + 2.0 * reserve.inflation_m();
     let with_obstacles = robot.with_obstacle_speed(obstacle_speed_mps);
     let narrowest = with_obstacles.as_ref().and_then(|robot| {
-        let slow = speeds(robot).filter(|v| (CREEP_MPS..=row.top_speed_mps).contains(v));
+        let slow = speeds(robot).filter(|v| *v <= row.top_speed_mps);
         let reserves = slow.filter_map(|v| Some((v, tubes.straight(robot, v)?)));
         reserves.min_by(|a, b| gap(&a.1).total_cmp(&gap(&b.1)))
     });

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::{Kinematics, Robot, Scanner};
+use crate::Robot;
 
 /// One named length of a budget.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -33,6 +33,14 @@ impl Reserve {
         self.inflation.iter().map(|term| term.value_m).sum()
     }
 
+    /// Path and the part of the inflation that counts against unknown space, metres.
+    #[must_use]
+    pub fn into_space_m(&self) -> f64 {
+        let own = self.inflation.iter();
+        let own = own.filter(|term| !POINT_TERMS.contains(&term.name));
+        self.reaction_m + self.braking_m + own.map(|term| term.value_m).sum::<f64>()
+    }
+
     /// Path and inflation, term by term.
     #[must_use]
     pub fn reach(&self) -> Vec<Term> {
@@ -55,8 +63,17 @@ impl Reserve {
 pub const REACTION: &str = "reaction";
 /// Name of the path while braking.
 pub const BRAKING: &str = "braking";
+/// Name of the scanner's error.
+pub const SENSOR: &str = "sensor";
+/// Name of what may hide between two beams.
+pub const BEAM_GAP: &str = "beam gap";
+/// Name of the odometry's error since the scan.
+pub const ODOMETRY: &str = "odometry";
 /// Name of the obstacle term.
 pub const MOVING: &str = "moving bodies";
+
+/// Terms that say how wrong or old a point may be; unknown space is not inflated by them.
+const POINT_TERMS: [&str; 4] = [SENSOR, BEAM_GAP, ODOMETRY, MOVING];
 
 /// Where reserves come from: the kernel, or a stand-in for tests.
 pub trait Tubes {
@@ -68,137 +85,23 @@ pub trait Tubes {
     fn on_the_spot(&self, robot: &Robot, rate_radps: f64) -> Option<Reserve>;
 }
 
+/// Range from the worst scanner to a place `ahead_m` before the rotation centre, metres.
+pub(super) fn range_to_m(robot: &Robot, ahead_m: f64) -> f64 {
+    let scanners = robot.values.scanners.iter();
+    let ranges = scanners.map(|s| (ahead_m - s.x_m).hypot(s.y_m));
+    ranges.fold(0.0, f64::max)
+}
+
+/// Largest angle between two beams of a scanner, radians.
+pub(super) fn beam_angle_rad(robot: &Robot) -> f64 {
+    let scanners = robot.values.scanners.iter();
+    scanners
+        .map(crate::Scanner::beam_angle_rad)
+        .fold(0.0, f64::max)
+}
+
 /// Longest time for which a motion may last before braking begins, seconds (`T` of spec/model.md).
 pub(crate) fn hold_s(robot: &Robot) -> f64 {
     let t = robot.values.timing;
     t.odometry_age_max_s + t.period_s + t.jitter_s + t.actuation_latency_s
 }
-
-/// Range error bound of the worst scanner, metres.
-pub(crate) fn sensor_m(robot: &Robot) -> f64 {
-    let errors = robot.values.scanners.iter().map(Scanner::error_m);
-    errors.fold(0.0, f64::max)
-}
-
-/// The formulas of `spec/model.md` over the reals, for steady motions.
-///
-/// Shares no code with the kernel; the tests hold the kernel's integers against it.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ModelTubes;
-
-impl ModelTubes {
-    /// Terms that belong to the points, not to the motion: seen at `range_m`, at `speed_mps`.
-    fn point_terms(robot: &Robot, range_m: f64, speed_mps: f64, rate_radps: f64) -> Vec<Term> {
-        let v = &robot.values;
-        let beam = v.scanners.iter().map(Scanner::beam_angle_rad);
-        let age = v.timing.scan_age_max_s;
-        let drift = v.tolerances.odometry_m_per_m * speed_mps * age
-            + v.tolerances.odometry_rad_per_rad * rate_radps * age * range_m;
-        vec![
-            Term {
-                name: "sensor",
-                value_m: sensor_m(robot),
-            },
-            Term {
-                name: "beam gap",
-                value_m: beam.fold(0.0, f64::max) * range_m,
-            },
-            Term {
-                name: "odometry",
-                value_m: drift,
-            },
-        ]
-    }
-}
-
-/// Largest number of steps between samples of a straight tube, as the kernel's.
-const STEPS: f64 = 48.0;
-
-impl Tubes for ModelTubes {
-    fn straight(&self, robot: &Robot, speed_mps: f64) -> Option<Reserve> {
-        let v = &robot.values;
-        let (tol_v, tol_w) = (v.tolerances.speed_mps, v.tolerances.angular_speed_radps);
-        let steered = match v.kinematics {
-            Kinematics::Differential => None,
-            Kinematics::Ackermann(steering) => Some(steering.curvature_tolerance_per_m()),
-        };
-        let hold = hold_s(robot);
-        let top = speed_mps + tol_v;
-        let turn_stop = match steered {
-            None => tol_w / v.limits.angular_braking_radps2,
-            Some(_) => 0.0,
-        };
-        let stop = (top / v.limits.braking_mps2).max(turn_stop);
-        let (path, time) = (top * (hold + stop / 2.0), hold + stop);
-        let rho = v.footprint.radius_m();
-        let bend = steered.unwrap_or(0.0);
-        let spread =
-            bend * (path * path / 2.0 + rho * path) + (tol_w + bend * tol_v) * time * (path + rho);
-        let ahead = v.footprint.front_m + path;
-        let mut inflation = Self::point_terms(robot, ahead, speed_mps, 0.0);
-        let age = v.timing.scan_age_max_s;
-        inflation.extend([
-            Term {
-                name: MOVING,
-                value_m: v.obstacle_speed_mps * (age + time),
-            },
-            Term {
-                name: "tracking",
-                value_m: v.tolerances.tracking_m,
-            },
-            Term {
-                name: "sampling",
-                value_m: path / STEPS / 2.0,
-            },
-            Term {
-                name: "spread",
-                value_m: spread,
-            },
-        ]);
-        Some(Reserve {
-            reaction_m: top * hold,
-            braking_m: path - top * hold,
-            time_s: time,
-            inflation,
-        })
-    }
-
-    fn on_the_spot(&self, robot: &Robot, rate_radps: f64) -> Option<Reserve> {
-        let v = &robot.values;
-        if v.kinematics != Kinematics::Differential {
-            return None;
-        }
-        let (tol_v, tol_w) = (v.tolerances.speed_mps, v.tolerances.angular_speed_radps);
-        let stop = ((rate_radps + tol_w) / v.limits.angular_braking_radps2)
-            .max(tol_v / v.limits.braking_mps2);
-        let time = hold_s(robot) + stop;
-        let rho = v.footprint.radius_m();
-        let mut inflation = Self::point_terms(robot, rho, 0.0, rate_radps);
-        inflation.extend([
-            Term {
-                name: MOVING,
-                value_m: v.obstacle_speed_mps * (v.timing.scan_age_max_s + time),
-            },
-            Term {
-                name: "tracking",
-                value_m: v.tolerances.tracking_m,
-            },
-            Term {
-                name: "sampling",
-                value_m: rho * SPOT_STEP_RAD / 2.0,
-            },
-            Term {
-                name: "spread",
-                value_m: tol_v * time,
-            },
-        ]);
-        Some(Reserve {
-            time_s: time,
-            inflation,
-            ..Reserve::default()
-        })
-    }
-}
-
-/// Angle between samples of a turn on the spot, as the kernel's 2 degrees.
-const SPOT_STEP_RAD: f64 = 0.034_906;

@@ -1,8 +1,10 @@
 //! Impossible combinations of values that are each fine by themselves.
 
+mod kernel;
 mod robot;
 mod scanner;
 
+pub(crate) use kernel::of_kernel;
 pub(crate) use robot::watches_rear;
 
 use crate::error::{RobotError, Source};

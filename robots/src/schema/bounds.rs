@@ -1,18 +1,18 @@
 //! The keys of what is assumed and allowed: tolerances, zone, memory, obstacles, silence.
 
 use super::Kind::{Choice, Count, Flag, NonNegative, Positive};
-use super::{Key, METRES, RATE, SECONDS, key};
+use super::{EDGE, Key, RATE, SECONDS, TOLERANCE, key};
 
 pub(super) const TOLERANCES: &[Key] = &[
     key(
         "speed_mps",
-        NonNegative(10.0),
+        NonNegative(TOLERANCE),
         "0.01",
         "Error of measured and of executed speed.",
     ),
     key(
         "angular_speed_radps",
-        NonNegative(10.0),
+        NonNegative(TOLERANCE),
         "0.01",
         "Error of measured and of executed turn rate.",
     ),
@@ -48,13 +48,13 @@ pub(super) const TOLERANCES: &[Key] = &[
     ),
     key(
         "follow_speed_mps",
-        Positive(10.0),
+        Positive(TOLERANCE),
         "0.15",
         "How far the measured speed may leave the hull of recent commands.",
     ),
     key(
         "follow_angular_speed_radps",
-        Positive(10.0),
+        Positive(TOLERANCE),
         "0.3",
         "How far the measured turn rate may leave the hull of recent commands.",
     ),
@@ -63,13 +63,13 @@ pub(super) const TOLERANCES: &[Key] = &[
 pub(super) const ZONE: &[Key] = &[
     key(
         "front_m",
-        NonNegative(10.0),
+        NonNegative(EDGE),
         "0.050",
         "Margin in front of the front edge.",
     ),
     key(
         "side_m",
-        NonNegative(10.0),
+        NonNegative(EDGE),
         "0.020",
         "Margin at both sides and behind.",
     ),
@@ -90,7 +90,7 @@ pub(super) const MEMORY: &[Key] = &[
     ),
     key(
         "clear_at_start_m",
-        NonNegative(METRES),
+        NonNegative(10.0),
         "1.0",
         "Radius around the rotation centre that the operator vouches for at a reset.",
     ),

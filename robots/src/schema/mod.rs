@@ -129,11 +129,13 @@ const fn once(name: &'static str, doc: &'static str, keys: &'static [Key]) -> Ta
     }
 }
 
-// The largest values below are no limits of any robot: they are where the
-// kernel's integers end or where a number can only be a slip of the unit.
-const METRES: f64 = 100.0;
-const SECONDS: f64 = 60.0;
+// The largest values are no limits of any robot: they are where the kernel's integers and
+// windows end, or where a number can only be a slip of the unit.
+const EDGE: f64 = 2.0;
+const SPEED: f64 = 20.0;
 const RATE: f64 = 100.0;
+const SECONDS: f64 = 10.0;
+const TOLERANCE: f64 = 2.0;
 
 /// All tables in the order of the template.
 pub const TABLES: &[Table] = &[

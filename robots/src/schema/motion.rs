@@ -1,7 +1,7 @@
 //! The keys of the robot itself: outline, steering, limits, times.
 
 use super::Kind::{Choice, Flag, NonNegative, Positive, Text};
-use super::{Key, METRES, RATE, SECONDS, key};
+use super::{EDGE, Key, RATE, SECONDS, SPEED, key};
 
 pub(super) const ROBOT: &[Key] = &[
     key("name", Text, "\"My robot\"", "Name in reports."),
@@ -16,25 +16,25 @@ pub(super) const ROBOT: &[Key] = &[
 pub(super) const FOOTPRINT: &[Key] = &[
     key(
         "front_m",
-        NonNegative(METRES),
+        NonNegative(EDGE),
         "0.60",
         "Rotation centre to the front edge.",
     ),
     key(
         "rear_m",
-        NonNegative(METRES),
+        NonNegative(EDGE),
         "0.60",
         "Rotation centre to the rear edge.",
     ),
     key(
         "left_m",
-        NonNegative(METRES),
+        NonNegative(EDGE),
         "0.42",
         "Rotation centre to the left edge.",
     ),
     key(
         "right_m",
-        NonNegative(METRES),
+        NonNegative(EDGE),
         "0.42",
         "Rotation centre to the right edge.",
     ),
@@ -43,7 +43,7 @@ pub(super) const FOOTPRINT: &[Key] = &[
 pub(super) const STEERING: &[Key] = &[
     key(
         "wheelbase_m",
-        Positive(METRES),
+        Positive(EDGE),
         "0.25",
         "Rear axle to front axle.",
     ),
@@ -70,13 +70,13 @@ pub(super) const STEERING: &[Key] = &[
 pub(super) const LIMITS: &[Key] = &[
     key(
         "speed_forward_mps",
-        Positive(RATE),
+        Positive(SPEED),
         "1.0",
         "Largest forward speed.",
     ),
     key(
         "speed_reverse_mps",
-        NonNegative(RATE),
+        NonNegative(SPEED),
         "0.0",
         "Largest reverse speed as a magnitude; 0 forbids reverse.",
     ),
@@ -88,7 +88,7 @@ pub(super) const LIMITS: &[Key] = &[
     ),
     key(
         "angular_speed_radps",
-        Positive(RATE),
+        Positive(SPEED),
         "1.4",
         "Largest turn rate.",
     ),

@@ -1,7 +1,13 @@
 //! The keys of scanners and their self-masks.
 
 use super::Kind::{Choice, Count, Flag, NonNegative, Positive, Signed, Text};
-use super::{Key, METRES, SECONDS, key};
+use super::{EDGE, Key, key};
+
+/// Positions of a scanner; where it may stand follows from the footprint.
+const METRES: f64 = 100.0;
+
+/// Ranges are kept in 16 bits of millimetres.
+const RANGE: f64 = 65.0;
 use crate::BEAMS;
 
 pub(super) const SCANNER: &[Key] = &[
@@ -26,9 +32,9 @@ pub(super) const SCANNER: &[Key] = &[
     ),
     key(
         "field_of_view_deg",
-        Positive(360.0),
+        Positive(359.9),
         "270.0",
-        "Angle from the first beam to the last.",
+        "Angle from the first beam to the last; a full turn of n beams has 360 - 360/n.",
     ),
     key(
         "upside_down",
@@ -44,7 +50,7 @@ pub(super) const SCANNER: &[Key] = &[
     ),
     key(
         "scan_time_s",
-        NonNegative(SECONDS),
+        NonNegative(1.0),
         "0.015",
         "Time from the first beam to the last.",
     ),
@@ -59,15 +65,15 @@ pub(super) const SCANNER: &[Key] = &[
     ),
     key(
         "range_min_m",
-        NonNegative(METRES),
+        NonNegative(10.0),
         "0.05",
         "Shortest range it measures; anything nearer is an obstacle at this range.",
     ),
     key(
         "range_max_m",
-        Positive(METRES),
+        Positive(RANGE),
         "18.0",
-        "Longest range it measures.",
+        "Longest range it measures; a longer return counts as none.",
     ),
     key(
         "error_systematic_m",
@@ -83,7 +89,7 @@ pub(super) const SCANNER: &[Key] = &[
     ),
     key(
         "no_return_clear_m",
-        NonNegative(METRES),
+        NonNegative(RANGE),
         "0.0",
         "Up to this range a beam without return is taken as free; a printed assumption.",
     ),
@@ -102,8 +108,8 @@ pub(super) const SCANNER: &[Key] = &[
 ];
 
 pub(super) const MASK: &[Key] = &[
-    key("x_min_m", Signed(METRES), "-0.10", "Rear edge."),
-    key("x_max_m", Signed(METRES), "0.10", "Front edge."),
-    key("y_min_m", Signed(METRES), "-0.10", "Right edge."),
-    key("y_max_m", Signed(METRES), "0.10", "Left edge."),
+    key("x_min_m", Signed(EDGE), "-0.10", "Rear edge."),
+    key("x_max_m", Signed(EDGE), "0.10", "Front edge."),
+    key("y_min_m", Signed(EDGE), "-0.10", "Right edge."),
+    key("y_max_m", Signed(EDGE), "0.10", "Left edge."),
 ];

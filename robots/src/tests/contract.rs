@@ -1,6 +1,8 @@
 //! The contract against figures computed by hand.
 
-use crate::contract::{Check, Contract, Finding, ModelTubes, Reserve, Term, Tubes};
+use crate::contract::{
+    Check, Contract, Finding, KernelTubes, ModelTubes, OBSTACLE_SPEEDS_MPS, Reserve, Term, Tubes,
+};
 use crate::{EMBEDDED, Robot};
 
 /// reach = 0.2 v + v² + 0.1 + 1.6 V, inflation the last two; nothing faster than `fastest`.
@@ -158,9 +160,9 @@ fn turning_is_held_against_the_area_in_view() {
     near(turn.value, 0.5, 1e-9);
     let whole = [
         half[0],
-        ("field_of_view_deg = 270.0", "field_of_view_deg = 360.0"),
+        ("field_of_view_deg = 270.0", "field_of_view_deg = 359.9"),
     ];
-    near(check(&seekur_with(&whole), "C-TURN").value, 0.0, 0.0);
+    near(check(&seekur_with(&whole), "C-TURN").value, 0.0, 0.001);
     // 1.2 m at 1.2 m/s take one second.
     let short = [half[0], half[1], ("age_max_s = 30.0", "age_max_s = 0.9")];
     assert_eq!(
@@ -290,8 +292,8 @@ fn the_model_agrees_with_a_calculation_by_hand() {
     near(term("sensor"), 0.066, 1e-9);
     // 0.01 x 2.682 x (1.78112 + 0.732393)
     near(term("spread"), 0.067412, 1e-6);
-    // (0.6 + 1.78112) x 0.5 deg
-    near(term("beam gap"), 0.020779, 1e-6);
+    // (0.6 + 1.78112 - 0.527) x 0.5 deg
+    near(term("beam gap"), 0.016180, 1e-6);
     near(term("tracking"), 0.02, 1e-12);
     near(term("moving bodies"), 0.0, 0.0);
     let crossing = seekur().with_obstacle_speed(1.0).unwrap();
@@ -302,4 +304,56 @@ fn the_model_agrees_with_a_calculation_by_hand() {
         .find(|t| t.name == "moving bodies")
         .unwrap();
     near(moving.value_m, 0.060 + 2.682, 1e-9);
+}
+
+/// The kernel's integers lie above the real numbers of the model, by its rounding and no more.
+///
+/// What may come on top: rounding of the tube (3 mm and a 2048th of the path), 2 mm for points,
+/// 4 ms of step at the end of the obstacle term, and 3 % where the kernel's bound is coarser.
+#[test]
+fn the_kernel_reserves_what_the_model_says() {
+    let mut compared = 0;
+    for (name, _) in EMBEDDED {
+        let robot = Robot::embedded(name).unwrap();
+        for obstacle_speed in OBSTACLE_SPEEDS_MPS {
+            let robot = robot.with_obstacle_speed(obstacle_speed).unwrap();
+            for speed in [0.05, 0.12, 0.2, 0.45] {
+                let Some(kernel) = KernelTubes.straight(&robot, speed) else {
+                    continue;
+                };
+                let model = ModelTubes.straight(&robot, speed).unwrap();
+                let sum = |r: &Reserve| r.reaction_m + r.braking_m + r.inflation_m();
+                let (above, of) = (sum(&kernel) - sum(&model), sum(&model));
+                assert!(
+                    above >= 0.0,
+                    "{name} {obstacle_speed} {speed}: {above} m below the model"
+                );
+                assert!(
+                    above <= 0.010 + 0.03 * of,
+                    "{name} {obstacle_speed} {speed}: {above} of {of}"
+                );
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared >= 30, "only {compared} tubes were compared");
+}
+
+#[test]
+fn the_contract_of_the_default_robot_holds_with_the_kernels_tubes() {
+    let contract = Contract::of(&seekur());
+    let failing: Vec<_> = contract
+        .checks
+        .iter()
+        .filter(|c| c.finding == Finding::Fails)
+        .collect();
+    assert!(failing.is_empty(), "{failing:#?}");
+    near(contract.speed_table[0].top_speed_mps, 1.2, 0.0);
+    assert!(contract.speed_table[2].top_speed_mps < 1.0);
+    let gaps: Vec<f64> = contract
+        .gap_table
+        .iter()
+        .map(|row| row.gap_m.unwrap())
+        .collect();
+    assert!(gaps.windows(2).all(|pair| pair[0] < pair[1]), "{gaps:?}");
 }

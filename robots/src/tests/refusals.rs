@@ -151,7 +151,7 @@ fn text_for_a_number_is_refused() {
 #[test]
 fn negative_time_is_refused() {
     let bad = seekur("rest_s = 0.2 ", "rest_s = -0.2");
-    bad.refused("rest_s", "`rest_s` cannot be -0.2", "a number from 0 to 60");
+    bad.refused("rest_s", "`rest_s` cannot be -0.2", "a number from 0 to 10");
 }
 
 #[test]
@@ -369,11 +369,12 @@ fn vouching_for_less_than_the_robot_is_refused() {
 
 #[test]
 fn ranges_in_wrong_order_are_refused() {
-    let bad = seekur("range_min_m = 0.05", "range_min_m = 18.0");
+    let bad = seekur("range_min_m = 0.05", "range_min_m = 9.0")
+        .and("range_max_m = 18.0", "range_max_m = 9.0");
     bad.refused(
         "range_min_m",
         "the shortest range is not below the longest",
-        "range_max_m = 18",
+        "range_max_m = 9",
     );
 }
 
@@ -489,4 +490,27 @@ fn columns_count_characters() {
     let bad = seekur("name = \"Seekur Jr\"", "name = \"Jürgen\", \"x\"");
     let error = bad.refused("name", "this is not TOML", "write each value");
     assert_eq!(error.column, 16);
+}
+
+/// Without a steering sensor the hull holds every set point of the steering's sweep:
+/// (0.1 + 0.06 + 0.6) s / 0.02 s = 38 set points and 6 more are beyond the kernel's 40.
+#[test]
+fn a_longer_pipeline_than_the_kernel_holds_is_refused() {
+    let bad = of(1, "sweep_s = 0.4", "sweep_s = 0.6");
+    bad.refused(
+        "period_s",
+        "more commands are in flight",
+        "raise period_s or lower",
+    );
+}
+
+/// Both within their own bounds, together more than the kernel's window.
+#[test]
+fn a_scanner_beyond_the_window_is_refused() {
+    let bad = seekur("x_m = 0.527", "x_m = 1.5").and("y_m = 0.0 ", "y_m = 1.0 ");
+    bad.refused(
+        "[[scanner]]",
+        "the kernel refuses this scanner",
+        "within 1.8 m",
+    );
 }
