@@ -120,8 +120,14 @@ mod tests {
     #[test]
     fn segment_wholly_inside_is_contact() {
         let stick = Shape::Segment([-0.01, 0.0], [0.01, 0.0]);
-        is(distance(stick, Pose::new(0.2, 0.1, 0.3), Pose::default()), 0.0);
-        is(distance(Shape::Circle(0.01), Pose::default(), Pose::default()), 0.0);
+        is(
+            distance(stick, Pose::new(0.2, 0.1, 0.3), Pose::default()),
+            0.0,
+        );
+        is(
+            distance(Shape::Circle(0.01), Pose::default(), Pose::default()),
+            0.0,
+        );
     }
 
     #[test]

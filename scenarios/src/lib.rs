@@ -5,15 +5,24 @@
 //! geometry at every dynamics step, and monitors watch every tick. Nothing here shares code with
 //! the kernel's geometry: the kernel is only ever called through its public door.
 
+pub mod assumption;
+pub mod batch;
+pub mod contact;
+pub mod controller;
+pub mod drive;
+pub mod engine;
+pub mod faults;
 pub mod file;
 pub mod math;
-pub mod raycast;
-pub mod result;
-pub mod sweep;
-pub mod world;
-pub mod contact;
-pub mod drive;
+pub mod monitor;
 pub mod noise;
 pub mod odometry;
+pub mod populate;
 pub mod proposer;
+pub mod raycast;
+pub mod result;
 pub mod sensor;
+pub mod sweep;
+pub mod trace;
+pub mod verdict;
+pub mod world;

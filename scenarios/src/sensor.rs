@@ -51,10 +51,18 @@ impl ScannerModel {
         let sensor = &scenario.sensor;
         let skewed = sensor.skew.unwrap_or(true);
         Self {
-            sigma_m: sensor.noise_sigma_m.map_or(scanner.error_sigma_m, |v| v.get()),
+            sigma_m: sensor
+                .noise_sigma_m
+                .map_or(scanner.error_sigma_m, |v| v.get()),
             // Reading too long is the dangerous direction.
-            bias_m: sensor.bias_m.map_or(scanner.error_systematic_m, |v| v.get()),
-            sweep_us: if skewed { microseconds(scanner.scan_time_s) } else { 0 },
+            bias_m: sensor
+                .bias_m
+                .map_or(scanner.error_systematic_m, |v| v.get()),
+            sweep_us: if skewed {
+                microseconds(scanner.scan_time_s)
+            } else {
+                0
+            },
             interval_us: microseconds(1.0 / scanner.rate_hz).max(1),
             delay_us: microseconds(sensor.delay_s.map_or(0.005, |v| v.get())),
             dropout: sensor.dropout_fraction.get(),
@@ -104,7 +112,15 @@ impl Sensors {
                 continue;
             };
             while *next + model.sweep_us <= now_us {
-                let scan = take(index, scanner, model, *next, world, pose_at, &mut self.noise);
+                let scan = take(
+                    index,
+                    scanner,
+                    model,
+                    *next,
+                    world,
+                    pose_at,
+                    &mut self.noise,
+                );
                 done.push((*next + model.sweep_us + model.delay_us, scan));
                 *next += model.interval_us;
             }

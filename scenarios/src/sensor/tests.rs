@@ -5,7 +5,11 @@ use crate::noise::Stream;
 use crate::world::{Body, Course, Shape, Trigger};
 
 fn scanner() -> Scanner {
-    Robot::embedded("seekur_jr").expect("the shipped robot is good").values.scanners[0].clone()
+    Robot::embedded("seekur_jr")
+        .expect("the shipped robot is good")
+        .values
+        .scanners[0]
+        .clone()
 }
 
 fn wall_ahead() -> World {
@@ -62,7 +66,15 @@ fn error_stays_within_systematic_plus_three_sigma() {
     let mut noise = Noise::new(3, Stream::Sensor);
     let mut seen = (f64::INFINITY, f64::NEG_INFINITY);
     for _ in 0..50 {
-        let scan = take(0, &scanner(), &model, 0, &wall_ahead(), &|_| Pose::default(), &mut noise);
+        let scan = take(
+            0,
+            &scanner(),
+            &model,
+            0,
+            &wall_ahead(),
+            &|_| Pose::default(),
+            &mut noise,
+        );
         for (beam, range) in scan.ranges_m.iter().enumerate().skip(200).take(140) {
             let angle = (beam as f64 - 270.0) * 0.5_f64.to_radians();
             let error = f64::from(*range) - 5.0 / angle.cos();
@@ -70,7 +82,10 @@ fn error_stays_within_systematic_plus_three_sigma() {
             seen = (seen.0.min(error), seen.1.max(error));
         }
     }
-    assert!(seen.0 < 0.0 && seen.1 > 0.06, "the noise is really there: {seen:?}");
+    assert!(
+        seen.0 < 0.0 && seen.1 > 0.06,
+        "the noise is really there: {seen:?}"
+    );
 }
 
 #[test]

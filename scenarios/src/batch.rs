@@ -1,0 +1,184 @@
+//! Runs cases, alone or many at a time, and puts the results in a fixed order.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use haltline_robots::Robot;
+use rayon::prelude::*;
+
+use crate::controller::{Controller, RobotKernel};
+use crate::engine::{Run, STEP_US, run};
+use crate::file::{Scenario, ScenarioError};
+use crate::result::{CaseResult, FootprintRecord, Outcome, SuiteResult};
+use crate::verdict::{judge, judge_group};
+
+/// A scenario with its robot, ready to run.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// Its robot, with the scenario's obstacle speed and host death settings.
+    pub robot: Robot,
+}
+
+/// A case that has just finished.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress<'a> {
+    /// Cases finished so far.
+    pub done: usize,
+    /// Cases in all.
+    pub total: usize,
+    /// Name of the finished one.
+    pub name: &'a str,
+    /// Whether it passed.
+    pub outcome: Outcome,
+}
+
+/// A case's result and the traces of its runs.
+#[derive(Clone, Debug)]
+pub struct CaseRun {
+    /// The result.
+    pub result: CaseResult,
+    /// Trace of the guarded run, JSON lines.
+    pub guarded_trace: String,
+    /// Trace of the naked run.
+    pub naked_trace: Option<String>,
+}
+
+/// Applies what a scenario says about the robot.
+///
+/// # Errors
+/// The obstacle speed does not fit the kernel, the kernel refuses the robot, or the control period
+/// is no multiple of a dynamics step.
+pub fn equip(scenario: Scenario, robot: &Robot) -> Result<Case, ScenarioError> {
+    let wrong = |message: String| ScenarioError::whole(&scenario.name, message);
+    let speed = scenario.obstacle_speed_mps.get();
+    let mut equipped = robot.with_obstacle_speed(speed).ok_or_else(|| {
+        wrong(format!(
+            "obstacle_speed_mps = {speed} does not fit the kernel; write at most 10"
+        ))
+    })?;
+    if let Some(cover) = scenario.cover_host_death {
+        equipped = equipped
+            .with_cover_host_death(cover)
+            .ok_or_else(|| wrong("cover_host_death does not fit this robot".to_owned()))?;
+    }
+    let period_us = crate::math::microseconds(equipped.values.timing.period_s);
+    if period_us == 0 || !period_us.is_multiple_of(STEP_US) {
+        return Err(wrong(format!(
+            "the control period of {} is {period_us} us; the simulator needs a multiple of {STEP_US} us",
+            robot.name
+        )));
+    }
+    RobotKernel::new(equipped.config)
+        .map_err(|error| wrong(format!("the kernel refuses {}: {error:?}", robot.name)))?;
+    Ok(Case {
+        scenario,
+        robot: equipped,
+    })
+}
+
+/// Runs one case with the guard, or without; none if the kernel refuses the robot.
+#[must_use]
+pub fn run_one(case: &Case, guard_on: bool) -> Option<Run> {
+    let controller: Option<Box<dyn Controller>> = if guard_on {
+        Some(Box::new(RobotKernel::new(case.robot.config).ok()?))
+    } else {
+        None
+    };
+    Some(run(&case.scenario, &case.robot, controller))
+}
+
+/// Runs a case and its naked twin and judges them; none if the kernel refuses the robot.
+#[must_use]
+pub fn run_case(case: &Case) -> Option<CaseRun> {
+    let guarded = run_one(case, true)?;
+    let excuse = case.scenario.naked_excuse();
+    let naked = match excuse {
+        Some(_) => None,
+        None => run_one(case, false),
+    };
+    Some(assemble(case, guarded, naked, excuse))
+}
+
+fn assemble(case: &Case, guarded: Run, naked: Option<Run>, excuse: Option<&str>) -> CaseRun {
+    let scenario = &case.scenario;
+    let outline = &case.robot.values.footprint;
+    let judgement = judge(scenario, &guarded.result, naked.as_ref().map(|n| &n.result));
+    let (naked_result, naked_trace) = naked.map(|n| (n.result, n.trace)).unzip();
+    CaseRun {
+        result: CaseResult {
+            name: scenario.name.clone(),
+            group: scenario.group.clone(),
+            title: scenario.title.clone(),
+            requirements: scenario.requirements.clone(),
+            robot: scenario.robot.clone(),
+            seed: scenario.seed,
+            obstacle_speed_mps: scenario.obstacle_speed_mps.get(),
+            footprint: FootprintRecord {
+                front_m: outline.front_m,
+                rear_m: outline.rear_m,
+                left_m: outline.left_m,
+                right_m: outline.right_m,
+            },
+            guarded: guarded.result,
+            naked: naked_result,
+            naked_reason: excuse.map(str::to_owned),
+            judgement,
+        },
+        guarded_trace: guarded.trace,
+        naked_trace,
+    }
+}
+
+/// Runs all cases on all cores; `finished` is called from any thread after each.
+#[must_use]
+pub fn run_suite(cases: &[Case], finished: &(dyn Fn(Progress<'_>) + Sync)) -> SuiteResult {
+    let done = AtomicUsize::new(0);
+    let mut results: Vec<CaseResult> = cases
+        .par_iter()
+        .filter_map(|case| {
+            let result = run_case(case)?.result;
+            finished(Progress {
+                done: done.fetch_add(1, Ordering::Relaxed) + 1,
+                total: cases.len(),
+                name: &result.name,
+                outcome: result.judgement.outcome,
+            });
+            Some(result)
+        })
+        .collect();
+    results.sort_by(|a, b| a.name.cmp(&b.name));
+    summarise(cases, results)
+}
+
+fn summarise(cases: &[Case], results: Vec<CaseResult>) -> SuiteResult {
+    let sweeps: BTreeMap<&str, Option<usize>> = cases
+        .iter()
+        .filter(|case| !case.scenario.sweep.is_empty())
+        .map(|case| {
+            let scenario = &case.scenario;
+            (scenario.group.as_str(), scenario.sweep_naked_touch_min)
+        })
+        .collect();
+    let groups: Vec<_> = sweeps
+        .into_iter()
+        .map(|(group, required)| {
+            let members: Vec<_> = results.iter().filter(|r| r.group == group).collect();
+            judge_group(group, &members, required)
+        })
+        .collect();
+    let bad_cases = results
+        .iter()
+        .filter(|r| r.judgement.outcome == Outcome::Fail);
+    let bad_groups = groups
+        .iter()
+        .filter(|g| g.judgement.outcome == Outcome::Fail);
+    let missing = cases.len() - results.len();
+    let failed = bad_cases.count() + bad_groups.count() + missing;
+    SuiteResult {
+        cases: results,
+        groups,
+        failed,
+    }
+}

@@ -1,0 +1,93 @@
+//! LATCH: stops hold until they may be released, and release never replays an old command.
+
+use haltline::decision::{Action, StopStatus};
+
+use super::{Ledger, Tick};
+use crate::drive::SetPoint;
+
+/// Rounding of the kernel's integers, m/s and rad/s.
+const ROUNDING: f64 = 5e-6;
+
+pub(super) struct Latch {
+    pub(super) ledger: Ledger,
+    latched: bool,
+    status: StopStatus,
+    released_us: Option<u64>,
+    before: Option<SetPoint>,
+}
+
+impl Latch {
+    pub(super) fn new() -> Self {
+        Self {
+            ledger: Ledger::new("LATCH"),
+            latched: true,
+            status: StopStatus::Latched,
+            released_us: None,
+            before: None,
+        }
+    }
+
+    pub(super) fn tick(&mut self, tick: &Tick<'_>) {
+        let decision = tick.decision;
+        self.ledger
+            .judged(self.latched || self.status != StopStatus::Running);
+        let line = tick.inputs.emergency_stop;
+        if line {
+            self.latched = true;
+        } else if self.latched && tick.inputs.reset_us.is_some() && tick.rested {
+            self.latched = false;
+        }
+        let (t_s, action) = (tick.t_s, decision.action);
+        if self.latched && action != Action::EmergencyStop {
+            let why = if line {
+                "line is pulled"
+            } else {
+                "stop is latched"
+            };
+            self.ledger.violated(
+                t_s,
+                format!("the emergency {why}, but the kernel says {action:?}"),
+            );
+        }
+        if self.status != StopStatus::Running && decision.status == StopStatus::Running {
+            self.released_us = Some(tick.now_us);
+        }
+        self.status = decision.status;
+        self.check_replay(tick);
+        self.check_growth(tick);
+        self.before = Some(decision.set_point);
+    }
+
+    /// LATCH-06: after a release only newer commands move the robot.
+    fn check_replay(&mut self, tick: &Tick<'_>) {
+        if !tick.decision.moves() {
+            return;
+        }
+        let replayed = match (self.released_us, tick.newest.command) {
+            (Some(released), Some(command)) => command <= released,
+            _ => true,
+        };
+        if replayed {
+            let what = "motion was let through on a command that is not newer than the release";
+            self.ledger.violated(tick.t_s, what.to_owned());
+        }
+    }
+
+    /// LATCH-07: the set point must not grow while a stop is active.
+    fn check_growth(&mut self, tick: &Tick<'_>) {
+        let Some(before) = self.before else {
+            return;
+        };
+        if tick.decision.action < Action::ProtectiveStop {
+            return;
+        }
+        let now = tick.decision.set_point;
+        let grew = |a: f64, b: f64| b.abs() > a.abs() + ROUNDING;
+        let turned =
+            matches!(now, SetPoint::Twist { .. }) && grew(before.turn_rate(), now.turn_rate());
+        if grew(before.speed(), now.speed()) || turned {
+            let what = format!("the set point grew during a stop: {before:?} to {now:?}");
+            self.ledger.violated(tick.t_s, what);
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! Judges that watch every tick. They see inputs, decisions and the truth, never the kernel.
+//!
+//! Each monitor states one family of requirements in its own arithmetic, so a mistake in the
+//! kernel cannot hide in a shared function. Each has a test in which it fires.
+
+mod claim;
+mod fresh;
+mod input;
+mod latch;
+mod limit;
+mod silent;
+mod usable;
+mod zone;
+
+#[cfg(test)]
+mod tests;
+
+use haltline::decision::{Action, Reason, StopStatus};
+use haltline_robots::Robot;
+
+use crate::assumption::Broken;
+use crate::controller::TickInputs;
+use crate::drive::SetPoint;
+use crate::math::Pose;
+use crate::result::{MonitorReport, Violation};
+use crate::world::World;
+use usable::Newest;
+
+/// A decision in SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DecisionRecord {
+    /// What was done with the desired motion.
+    pub action: Action,
+    /// Why.
+    pub reason: Reason,
+    /// State of the stop logic.
+    pub status: StopStatus,
+    /// What the drive must do.
+    pub set_point: SetPoint,
+    /// Expiry on the host's clock.
+    pub expires_us: u64,
+    /// The point that decided, body frame, metres.
+    pub point_m: Option<[f64; 2]>,
+}
+
+impl DecisionRecord {
+    /// Whether it lets a desired motion through that is not standstill.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        let still = |v: f64| v.abs() < 1e-9;
+        self.action < Action::Brake
+            && !(still(self.set_point.speed()) && still(self.set_point.turn_rate()))
+    }
+}
+
+/// One tick as the monitors see it.
+pub struct Tick<'a> {
+    /// Time since the start of the run.
+    pub t_s: f64,
+    /// The host's clock.
+    pub now_us: u64,
+    /// What reached the kernel.
+    pub inputs: &'a TickInputs,
+    /// What it answered.
+    pub decision: &'a DecisionRecord,
+    /// True pose now.
+    pub pose: Pose,
+    /// True pose at a time of the simulator's clock.
+    pub pose_at: &'a dyn Fn(u64) -> Pose,
+    /// Whether the robot has truly been at rest for its rest time.
+    pub rested: bool,
+    /// Newest usable stamps, this tick's inputs included.
+    newest: Newest,
+}
+
+/// A contact at one dynamics step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Time.
+    pub t_s: f64,
+    /// Body.
+    pub body: usize,
+}
+
+/// Counts and complaints of one monitor.
+#[derive(Clone, Debug)]
+struct Ledger {
+    report: MonitorReport,
+}
+
+/// Violations kept in full; the rest is only counted.
+const KEPT: usize = 20;
+
+impl Ledger {
+    fn new(id: &str) -> Self {
+        Self {
+            report: MonitorReport {
+                id: id.to_owned(),
+                checked: 0,
+                engaged: 0,
+                violation_count: 0,
+                violations: Vec::new(),
+            },
+        }
+    }
+
+    /// Notes that a tick was judged, and whether the requirement had something to say.
+    fn judged(&mut self, engaged: bool) {
+        self.report.checked += 1;
+        self.report.engaged += u64::from(engaged);
+    }
+
+    fn violated(&mut self, t_s: f64, what: String) {
+        self.report.violation_count += 1;
+        if self.report.violations.len() < KEPT {
+            self.report.violations.push(Violation { t_s, what });
+        }
+    }
+}
+
+/// All monitors of a run.
+pub struct Monitors<'r> {
+    robot: &'r Robot,
+    newest: Newest,
+    claim: claim::Claim,
+    limit: limit::Limit,
+    zone: zone::Zone,
+    fresh: fresh::Fresh,
+    silent: silent::Silent,
+    latch: latch::Latch,
+    input: input::Input,
+}
+
+impl<'r> Monitors<'r> {
+    /// Monitors at time zero.
+    #[must_use]
+    pub fn new(robot: &'r Robot, world: &World) -> Self {
+        let names = world
+            .bodies()
+            .iter()
+            .map(|body| body.name.clone())
+            .collect();
+        let moves = world.bodies().iter().map(|b| b.top_speed() > 0.0).collect();
+        Self {
+            robot,
+            newest: Newest::new(robot),
+            claim: claim::Claim::new(names, moves),
+            limit: limit::Limit::new(),
+            zone: zone::Zone::new(),
+            fresh: fresh::Fresh::new(),
+            silent: silent::Silent::new(),
+            latch: latch::Latch::new(),
+            input: input::Input::new(),
+        }
+    }
+
+    /// Judges one tick.
+    pub fn tick(&mut self, mut tick: Tick<'_>) {
+        let fresh_scans = self.newest.take_in(self.robot, tick.inputs, tick.now_us);
+        tick.newest = self.newest.clone();
+        self.claim.tick(&tick, &fresh_scans);
+        self.limit.tick(self.robot, &tick);
+        self.zone.tick(self.robot, &tick, &fresh_scans);
+        self.fresh.tick(self.robot, &tick);
+        self.silent.tick(self.robot, &tick);
+        self.latch.tick(&tick);
+        self.input.tick(self.robot, &tick);
+    }
+
+    /// Judges the first dynamics step at which a moving robot overlaps a body.
+    pub fn touch(&mut self, touch: Touch, broken: &[Broken]) {
+        self.claim.touch(touch, broken);
+    }
+
+    /// Bodies that some valid beam of a delivered scan has returned so far.
+    #[must_use]
+    pub fn seen(&self) -> &[Option<f64>] {
+        self.claim.seen()
+    }
+
+    /// The accounts.
+    #[must_use]
+    pub fn finish(self) -> Vec<MonitorReport> {
+        vec![
+            self.claim.ledger.report,
+            self.limit.ledger.report,
+            self.zone.ledger.report,
+            self.fresh.ledger.report,
+            self.silent.ledger.report,
+            self.latch.ledger.report,
+            self.input.ledger.report,
+        ]
+    }
+}
+
+impl<'a> Tick<'a> {
+    /// A tick whose newest stamps are filled in by [`Monitors::tick`].
+    #[must_use]
+    pub fn new(
+        (t_s, now_us): (f64, u64),
+        inputs: &'a TickInputs,
+        decision: &'a DecisionRecord,
+        pose_at: &'a dyn Fn(u64) -> Pose,
+        (pose, rested): (Pose, bool),
+    ) -> Self {
+        Self {
+            t_s,
+            now_us,
+            inputs,
+            decision,
+            pose,
+            pose_at,
+            rested,
+            newest: Newest::default(),
+        }
+    }
+}
