@@ -1,9 +1,10 @@
 //! The checks, one function each.
 
 use super::tables::{known_ahead, obstructs, slowest_mps, space_ahead_m};
+use super::timing::{host_death, scan_in_time, tracking_window_spans_latency};
 use super::tubes::{Tubes, hold_s};
-use super::{Check, Finding, blind};
-use crate::{Kinematics, Robot, Silence};
+use super::{Check, Finding, blind, holds_if};
+use crate::{Kinematics, Robot};
 
 /// All checks in the order of the certificate.
 pub(super) fn all(robot: &Robot, tubes: &dyn Tubes) -> Vec<Check> {
@@ -19,14 +20,6 @@ pub(super) fn all(robot: &Robot, tubes: &dyn Tubes) -> Vec<Check> {
     checks.push(zone_in_view(robot));
     checks.push(host_death(robot));
     checks
-}
-
-fn holds_if(condition: bool) -> Finding {
-    if condition {
-        Finding::Holds
-    } else {
-        Finding::Fails
-    }
 }
 
 fn stop_within_view(robot: &Robot, tubes: &dyn Tubes) -> Check {
@@ -189,61 +182,6 @@ fn reverse_within_view(robot: &Robot) -> Check {
     }
 }
 
-fn scan_in_time(robot: &Robot, scanner: &crate::Scanner) -> Check {
-    let bound = robot.values.timing.scan_age_max_s;
-    let value = scanner.scan_time_s + 1.0 / scanner.rate_hz;
-    let (name, ms) = (&scanner.name, |s: f64| s * 1000.0);
-    Check {
-        id: "C-SCAN-AGE",
-        title: "Age of a scan when the next one is due against the age limit",
-        finding: holds_if(value < bound),
-        value,
-        bound,
-        unit: "s",
-        sentence: if value < bound {
-            format!(
-                "A scan of {name} is {:.0} ms old when the next is complete; the limit of {:.0} ms leaves \
-                 {:.0} ms for transport.",
-                ms(value),
-                ms(bound),
-                ms(bound - value)
-            )
-        } else {
-            format!(
-                "A scan of {name} is {:.0} ms old when the next is complete, beyond the limit of {:.0} ms: \
-                 the robot would stop between scans; raise scan_age_max_s.",
-                ms(value),
-                ms(bound)
-            )
-        },
-    }
-}
-
-fn tracking_window_spans_latency(robot: &Robot) -> Check {
-    let t = robot.values.timing;
-    let value = t.actuation_latency_s + t.odometry_age_max_s + t.period_s;
-    let bound = t.tracking_window_s;
-    let comparison = if value <= bound {
-        "fits into"
-    } else {
-        "does not fit into: a healthy drive would be stopped; raise tracking_window_s beyond it, not"
-    };
-    Check {
-        id: "C-TRACKING",
-        title: "Latency of the drive against the window in which it must follow",
-        finding: holds_if(value <= bound),
-        value,
-        bound,
-        unit: "s",
-        sentence: format!(
-            "From a command to its echo in the odometry it may take {:.0} ms, which {comparison} the \
-             window of {:.0} ms.",
-            value * 1000.0,
-            bound * 1000.0
-        ),
-    }
-}
-
 /// Speed that a margin alone can stop: `v T + v²/(2 b) = margin`.
 fn speed_stopped_within(robot: &Robot, margin_m: f64) -> f64 {
     let (hold, b) = (hold_s(robot), robot.values.limits.braking_mps2);
@@ -251,31 +189,29 @@ fn speed_stopped_within(robot: &Robot, margin_m: f64) -> f64 {
 }
 
 fn zone_inside_inflation(robot: &Robot, tubes: &dyn Tubes) -> Check {
-    let (zone, width) = (robot.values.zone, robot.values.footprint.width_m());
+    let zone = robot.values.zone;
+    let value = zone.front_m.max(zone.side_m);
     let creeping = tubes.straight(robot, slowest_mps(robot));
     let bound = creeping.as_ref().map_or(0.0, super::Reserve::inflation_m);
     let alone = speed_stopped_within(robot, zone.front_m);
-    let fits = zone.side_m <= bound;
+    let fits = value <= bound;
     Check {
         id: "C-ZONE",
-        title: "Critical zone against the guard's own distance",
+        title: "Critical zone against the distance the guard keeps",
         finding: holds_if(fits),
-        value: zone.side_m,
+        value,
         bound,
         unit: "m",
         sentence: if fits {
             format!(
-                "The guard keeps at least {bound:.3} m at the sides, more than the zone's {:.3} m, so a \
-                 motion it accepts never ends in the zone. Alone, the front zone stops the robot from \
-                 {alone:.2} m/s; above that it is the guard that stops in time.",
-                zone.side_m
+                "The guard keeps at least {bound:.3} m from what it knows, more than the zone's {value:.3} m: \
+                 a motion it accepts in the clear ends outside the zone. Alone, the front zone stops the \
+                 robot from {alone:.2} m/s; above that it is the guard that stops in time."
             )
         } else {
             format!(
-                "The guard lets bodies as near as {bound:.3} m, inside the zone's {:.3} m: the robot would \
-                 stop in gaps of {:.2} m that it could pass; lower zone.side_m.",
-                zone.side_m,
-                width + 2.0 * zone.side_m
+                "The guard lets bodies as near as {bound:.3} m, inside the zone's {value:.3} m: motions \
+                 that it accepts would end in a protective stop; lower zone.front_m and zone.side_m."
             )
         },
     }
@@ -304,44 +240,5 @@ fn zone_in_view(robot: &Robot) -> Check {
                 blind * 100.0
             )
         },
-    }
-}
-
-fn host_death(robot: &Robot) -> Check {
-    let (h, limits) = (robot.values.host_death, robot.values.limits);
-    let v = limits.speed_forward_mps;
-    let value = v * h.watchdog_s + v * v / (2.0 * h.braking_mps2);
-    let (bound, by) = known_ahead(robot);
-    let does = match h.behaviour {
-        Silence::Coast => "coasts",
-        Silence::Brake => "brakes",
-    };
-    let distance = format!(
-        "If the host dies at {v:.2} m/s the drive goes on for {:.2} s, then {does}: {value:.2} m",
-        h.watchdog_s
-    );
-    let (finding, sentence) = if !h.cover_host_death {
-        (
-            Finding::NotCovered,
-            format!("Host failure: not covered. {distance}."),
-        )
-    } else if value <= bound {
-        let sentence = format!("{distance}; the guard keeps that room. Host failure: covered.");
-        (Finding::Holds, sentence)
-    } else {
-        let sentence = format!(
-            "{distance}, more than the {bound:.2} m known ahead ({by}); lower speed_forward_mps or \
-             watchdog_s, or write cover_host_death = false."
-        );
-        (Finding::Fails, sentence)
-    };
-    Check {
-        id: "C-HOST",
-        title: "Distance after the death of the host",
-        finding,
-        value,
-        bound,
-        unit: "m",
-        sentence,
     }
 }

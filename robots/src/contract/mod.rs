@@ -10,6 +10,7 @@ mod checks;
 mod kernel_tubes;
 mod model;
 mod tables;
+mod timing;
 mod tubes;
 
 use serde::Serialize;
@@ -156,5 +157,13 @@ impl Contract {
             .checks
             .iter()
             .any(|check| check.finding == Finding::Fails)
+    }
+}
+
+fn holds_if(condition: bool) -> Finding {
+    if condition {
+        Finding::Holds
+    } else {
+        Finding::Fails
     }
 }

@@ -48,3 +48,24 @@ fn the_readme_holds_the_key_list() {
     // To update: `cargo run -p haltline-robots --example key_list`, paste between the markers.
     assert_eq!(listed, Some(key_list().trim()));
 }
+
+#[test]
+fn the_readme_names_every_check_of_the_contract() {
+    let readme = include_str!("../../README.md");
+    let robot = Robot::embedded("seekur_jr").unwrap();
+    for check in crate::contract::Contract::of(&robot).checks {
+        assert!(
+            readme.contains(&format!("| `{}` |", check.id)),
+            "{}",
+            check.id
+        );
+    }
+}
+
+#[test]
+fn the_readme_lists_every_shipped_file() {
+    let readme = include_str!("../../README.md");
+    for (name, _) in crate::EMBEDDED {
+        assert!(readme.contains(&format!("| `{name}.toml` |")), "{name}");
+    }
+}
