@@ -10,6 +10,13 @@ fn the_template_parses() {
 }
 
 #[test]
+fn the_contract_of_the_template_holds() {
+    let robot = Robot::parse(&template(), "template.toml").unwrap();
+    let contract = crate::contract::Contract::of(&robot);
+    assert!(contract.holds(), "{:#?}", contract.checks);
+}
+
+#[test]
 fn the_template_shows_every_table_and_key() {
     let text = template();
     for table in TABLES {
