@@ -335,9 +335,17 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
             }
         }
         let remembered = self.remembered.get(..self.count).unwrap_or(&[]);
+        // Neighbours in the store mostly come from one scan.
+        let mut same: Option<(Instant, OwnTerms)> = None;
         for (point, slot) in remembered.iter().zip(self.remembered_cloud.iter_mut()) {
-            let stale = model.staleness(point.stamp, point.odometer, now, odometer);
-            let own = OwnTerms::new(model, &stale);
+            let own = match same {
+                Some((stamp, own)) if stamp == point.stamp => own,
+                _ => {
+                    let stale = model.staleness(point.stamp, point.odometer, now, odometer);
+                    OwnTerms::new(model, &stale)
+                }
+            };
+            same = Some((point.stamp, own));
             *slot = own.place(&view, (point.x_mm, point.y_mm), point.gap_mm, false);
         }
     }
@@ -445,8 +453,9 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
 }
 
 /// Own inflation of all points seen at one time.
+#[derive(Clone, Copy)]
 struct OwnTerms {
-    constant_um: u64,
+    constant_mm: u64,
     /// Heading error in 2⁻²⁰ per mm of distance, rounded up.
     lever_q20: u64,
 }
@@ -454,10 +463,11 @@ struct OwnTerms {
 impl OwnTerms {
     fn new(model: &MemoryModel, stale: &Staleness) -> Self {
         Self {
-            constant_um: model
+            constant_mm: model
                 .sensor_um
                 .saturating_add(stale.drift_um)
-                .saturating_add(stale.moved_um),
+                .saturating_add(stale.moved_um)
+                .div_ceil(1000),
             lever_q20: mul_div_up(stale.turn_urad, 1_048_577, 1_000_000),
         }
     }
@@ -478,8 +488,7 @@ impl OwnTerms {
             u64::from(x_mm.unsigned_abs()).saturating_add(u64::from(y_mm.unsigned_abs()));
         let lever_mm = (distance.saturating_mul(self.lever_q20) >> 20).saturating_add(1);
         let extra = self
-            .constant_um
-            .div_ceil(1000)
+            .constant_mm
             .saturating_add(lever_mm)
             .saturating_add(u64::from(gap_mm));
         CloudPoint {

@@ -52,15 +52,16 @@ pub fn entered(
             .max(1)
     };
     let strided = samples.iter().skip(1).step_by(stride);
+    let mut rows: Rows = [0; CELLS];
     for sample in strided.chain(core::iter::once(last)) {
         let rect = footprint.grown(eighths_up(growth_um(tube, sample)));
-        let mut rows: Rows = [0; CELLS];
         let span = place.fill(&mut rows, sample.corners(rect));
         if !place.inside(sample.corners(rect)) {
             return Some(body_point(sample.centre));
         }
         for row in span {
-            let wanted = rows.get(row).copied().unwrap_or(0);
+            // Leaves the row empty for the next sample.
+            let wanted = rows.get_mut(row).map_or(0, core::mem::take);
             let free = seen.known(row) | excused.get(row).copied().unwrap_or(0);
             let unknown = wanted & !free;
             if unknown != 0 {
