@@ -2,6 +2,11 @@
 //!
 //! Read them as ratios within one run; instruction counts are in `instructions.rs`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
+#![allow(
+    clippy::arithmetic_side_effects,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss
+)]
 
 #[path = "../tests/common/mod.rs"]
 mod common;

@@ -149,7 +149,8 @@ fn slewed(from: i32, to: i32, faster: i32, slower: i32) -> i32 {
     }
     let low = from.saturating_sub(slower).max(0);
     let high = from.saturating_add(faster);
-    to.clamp(low, high)
+    // Not `clamp`, which panics on an empty interval.
+    to.max(low).min(high)
 }
 
 /// `vertex` scaled down on its curvature until it is no faster than `measured` plus tolerance.

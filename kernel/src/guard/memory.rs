@@ -219,7 +219,11 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
 
     fn remove(&mut self, index: usize) {
         let last = self.count.saturating_sub(1);
-        self.remembered.swap(index.min(last), last);
+        if let Some(filler) = self.remembered.get(last).copied()
+            && let Some(slot) = self.remembered.get_mut(index)
+        {
+            *slot = filler;
+        }
         self.count = last;
     }
 

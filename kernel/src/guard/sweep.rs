@@ -296,7 +296,7 @@ impl<const B: usize> Sweep<B> {
             Some(Beam::NoReturn) => millimetres(scanner.no_return_clear.as_um()),
             _ => 0,
         };
-        clear.clamp(0, rules.clear_max_mm)
+        clear.max(0).min(rules.clear_max_mm)
     }
 
     /// What this scan says about `place` (mm from the anchor) known to within `error_mm`.
@@ -410,7 +410,7 @@ impl<const B: usize> Sweep<B> {
             range_mm: narrow(i64::try_from(range).unwrap_or(i64::MAX)),
             bearing,
             beam,
-            index: usize::try_from(beam.clamp(0, last)).unwrap_or(0),
+            index: usize::try_from(beam.max(0).min(last)).unwrap_or(0),
         }
     }
 

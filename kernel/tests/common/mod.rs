@@ -7,6 +7,7 @@
     missing_docs
 )]
 #![allow(clippy::indexing_slicing, clippy::arithmetic_side_effects)]
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
 use haltline::config::*;
 use haltline::convert::{self, Round};

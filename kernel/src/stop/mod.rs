@@ -137,3 +137,6 @@ fn may_reset(state: &StopState, events: &StopEvents, times: StopTimes) -> bool {
     let newer = stamp > state.since;
     fresh && newer && events.at_rest && !events.hazard
 }
+
+#[cfg(test)]
+mod tests;
