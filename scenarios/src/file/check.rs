@@ -47,10 +47,13 @@ fn check_expect(scenario: &Scenario) -> Result<(), Complaint> {
         || expect.stopped_before.is_some()
         || expect.blocked.is_some()
         || !expect.reasons.is_empty()
-        || expect.stop_within_s.is_some();
+        || expect.stop_within_s.is_some()
+        || expect.travelled_min_m.is_some()
+        || expect.turned_min_rad.is_some()
+        || !expect.assumptions_broken.is_empty();
     if !says_something {
-        let message = "[expect] asks for nothing; write reached, stopped_before, blocked, reasons \
-                       or stop_within_s";
+        let message = "[expect] asks for nothing; write reached, stopped_before, blocked, reasons, \
+                       stop_within_s, travelled_min_m, turned_min_rad or assumptions_broken";
         return Err((None, message.to_owned()));
     }
     if expect.reached == Some(true) && scenario.goal.is_none() {
