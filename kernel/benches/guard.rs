@@ -13,7 +13,7 @@ mod common;
 mod scene;
 
 use divan::{Bencher, black_box};
-use scene::Setup;
+use scene::{Setup, Tick};
 
 fn main() {
     divan::main();
@@ -36,9 +36,12 @@ fn refresh(bencher: Bencher<'_, '_>) {
 /// A full shield tick: scan, odometry and command in, decision out.
 #[divan::bench(args = ["typical", "crowded"])]
 fn tick(bencher: Bencher<'_, '_>, name: &str) {
-    let setup = Setup::named(name);
+    let make = match name {
+        "crowded" => Tick::closing_in,
+        _ => Tick::corridor,
+    };
     bencher
-        .with_inputs(|| setup.tick_inputs())
+        .with_inputs(make)
         .bench_local_values(|inputs| black_box(inputs.run()));
 }
 

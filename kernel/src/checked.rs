@@ -22,6 +22,9 @@ pub enum ConfigError {
     SpeedLimit,
     /// An acceleration or deceleration is zero.
     Acceleration,
+    /// A drive that ramps v and ω together cannot follow set points that accelerate faster than
+    /// it surely brakes: the ramp to rest would lag behind them.
+    Ramps,
     /// The control period is zero, or period, jitter, latency or the ages exceed 10 s.
     Timing,
     /// Latency, odometry age and steering sweep hold more control periods than the hull has room for.
@@ -155,6 +158,11 @@ fn check_robot<const S: usize>(config: &Config<S>) -> Result<(), ConfigError> {
         })
     {
         return Err(ConfigError::Acceleration);
+    }
+    if limits.acceleration.as_um_per_s2() > limits.braking.as_um_per_s2()
+        || limits.angular_acceleration.as_urad_per_s2() > limits.angular_braking.as_urad_per_s2()
+    {
+        return Err(ConfigError::Ramps);
     }
     if let Kinematics::Ackermann {
         curvature_max,

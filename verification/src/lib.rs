@@ -6,3 +6,4 @@
 //! *Proofs*.
 
 pub mod image;
+pub mod timing;

@@ -18,7 +18,6 @@ pub struct Setup {
     config: KernelConfig<1>,
     memory: Box<Known>,
     hull: Hull,
-    crowded: bool,
 }
 
 /// Ranges of a scan by beam, millimetres; zero is an unusable beam.
@@ -106,7 +105,6 @@ impl Setup {
             } else {
                 (600_000, 60_000)
             }),
-            crowded,
         };
         setup.memory.vouch(LocalPose::default(), 3_500);
         setup.refresh();
@@ -133,23 +131,9 @@ impl Setup {
             stamp: Instant::from_us(1_020_000),
             odometer: Odometer::default(),
             skirt_um: 50_000,
-            leaving: false,
+            excuse: None,
         };
         certify(self.config.tube(), &self.hull, 142_000, &scene)
-    }
-
-    /// A running kernel with a scan, odometry and command ready for one tick.
-    pub fn tick_inputs(&self) -> Tick {
-        let half = if self.crowded { 0.75 } else { 1.5 };
-        let mut room = common::Room::new((-6.0, 6.0), (-half, half), common::config());
-        let _ = room.start();
-        for _ in 0..40 {
-            let _ = room.tick(Some((0.6, 0.06)), false);
-        }
-        Tick {
-            beams: room.beams(),
-            room: Box::new(room),
-        }
     }
 }
 
@@ -160,6 +144,48 @@ pub struct Tick {
 }
 
 impl Tick {
+    /// A robot that drives along a corridor.
+    pub fn corridor() -> Self {
+        let mut room = common::Room::new((-6.0, 6.0), (-1.5, 1.5), common::config());
+        let _ = room.start();
+        for _ in 0..40 {
+            let _ = room.tick(Some((0.6, 0.06)), false);
+        }
+        Self {
+            beams: room.beams(),
+            room: Box::new(room),
+        }
+    }
+
+    /// Rings of returns that close in on a driving robot: each hides the one before, so that
+    /// the store fills up, and the last lies within the tube's bounding box.
+    pub fn closing_in() -> Self {
+        let Self { mut room, .. } = Self::corridor();
+        for ring in [2_400, 1_900, 1_500] {
+            let beams = beams(|beam| ring + (beam % 5) as u16);
+            let now = room.now();
+            let scans = [Reading::Value(Scan {
+                scanner: 0,
+                stamp: Instant::from_us(room.now_us - 20_000),
+                beams: &beams,
+            })];
+            let inputs = Inputs {
+                scans: &scans,
+                odometry: Reading::Value(room.odometry()),
+                command: room.command(0.6, 0.5),
+                emergency_stop: false,
+                reset: None,
+            };
+            let _ = room.step(&inputs);
+            assert!(room.now() > now);
+        }
+        assert!(room.kernel.memory().remembered().len() > 900);
+        Self {
+            beams: beams(|beam| 1_100 + (beam % 5) as u16),
+            room,
+        }
+    }
+
     /// Runs it.
     pub fn run(mut self) -> haltline::decision::Decision {
         let scans = [Reading::Value(Scan {

@@ -91,6 +91,51 @@ impl Rect {
     }
 }
 
+impl Rect {
+    /// Squared distance from the segment `a`–`b` to the rectangle, rounded down; zero if they touch.
+    ///
+    /// Saturates like [`Rect::distance_squared`].
+    #[must_use]
+    pub fn segment_distance_squared(&self, a: PointMm, b: PointMm) -> u64 {
+        if self.touches(a, b) {
+            return 0;
+        }
+        let ends = self.distance_squared(a).min(self.distance_squared(b));
+        let (rear, right) = (self.rear.saturating_neg(), self.right.saturating_neg());
+        [
+            (self.front, self.left),
+            (self.front, right),
+            (rear, self.left),
+            (rear, right),
+        ]
+        .iter()
+        .filter_map(|&(x, y)| above_segment(PointMm { x, y }, a, b))
+        .fold(ends, u64::min)
+    }
+}
+
+/// Squared distance from `point` to the line through `a` and `b`, rounded down, if its foot lies
+/// between them.
+fn above_segment(point: PointMm, a: PointMm, b: PointMm) -> Option<u64> {
+    let minus = |p: PointMm, q: PointMm| {
+        (
+            i64::from(p.x).saturating_sub(i64::from(q.x)),
+            i64::from(p.y).saturating_sub(i64::from(q.y)),
+        )
+    };
+    let (dx, dy) = minus(b, a);
+    let (px, py) = minus(point, a);
+    let square = dx.saturating_mul(dx).saturating_add(dy.saturating_mul(dy));
+    let foot = dx.saturating_mul(px).saturating_add(dy.saturating_mul(py));
+    if foot <= 0 || foot >= square {
+        return None;
+    }
+    let area = dx.saturating_mul(py).saturating_sub(dy.saturating_mul(px));
+    let length = square.unsigned_abs().isqrt().saturating_add(1);
+    let height = area.unsigned_abs().checked_div(length)?;
+    Some(height.saturating_mul(height))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -119,6 +164,21 @@ mod tests {
         assert!(RECT.touches(point(-100, 5), point(100, 5)));
         assert!(RECT.touches(point(70, 0), point(0, 70)));
         assert!(!RECT.touches(point(95, 0), point(0, 95)));
+    }
+
+    #[test]
+    fn a_long_segment_beside_a_corner_is_as_near_as_the_corner() {
+        // The ends are far away; the line passes 10 in front of the front edge's corner.
+        let distance = RECT.segment_distance_squared(point(70, -500), point(70, 500));
+        assert!((81..=100).contains(&distance), "{distance}");
+        assert_eq!(
+            RECT.segment_distance_squared(point(50, -500), point(50, 500)),
+            0
+        );
+        assert_eq!(
+            RECT.segment_distance_squared(point(70, 10), point(80, 10)),
+            100
+        );
     }
 
     /// Against a brute-force walk along the segment, on a grid fine enough to be exact.

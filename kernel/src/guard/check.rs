@@ -56,8 +56,8 @@ pub struct Touch {
 
 /// The first point of `cloud` that `tube` touches, if any; with the number of excused points.
 ///
-/// With `leaving`, a point inside the first sample (the inflation at the start)
-/// blocks only if a later sample brings the footprint nearer to it.
+/// With an `excuse`, a point inside the inflation where the robot rested blocks only if a later
+/// sample brings the footprint nearer to it.
 /// # Bound
 /// O(points × samples), at most one segment test each.
 /// # Source
@@ -67,7 +67,7 @@ pub fn first_touch(
     tube: &Tube,
     footprint: Rect,
     cloud: &[CloudPoint],
-    leaving: bool,
+    excuse: Option<&Excuse>,
 ) -> Option<Touch> {
     let mut previous: Option<&CloudPoint> = None;
     for (index, point) in cloud.iter().enumerate() {
@@ -84,7 +84,7 @@ pub fn first_touch(
         ) {
             continue;
         }
-        if let Some(sample) = touched_sample(tube, footprint, start, point, extra, leaving) {
+        if let Some(sample) = touched_sample(tube, footprint, start, point, extra, excuse) {
             return Some(Touch {
                 index,
                 point: BodyPoint {
@@ -113,18 +113,15 @@ fn touched_sample<'t>(
     start: &CloudPoint,
     end: &CloudPoint,
     extra_mm: u16,
-    leaving: bool,
+    excuse: Option<&Excuse>,
 ) -> Option<&'t Sample> {
     let samples = tube.samples();
     if extra_mm > EXTRA_MAX_MM {
         return samples.first();
     }
     let extra = eighths_up(u64::from(extra_mm).saturating_mul(1000));
-    let excused_beyond = if leaving {
-        start_distance(tube, footprint, start, end, extra)
-    } else {
-        None
-    };
+    let excused_beyond =
+        excuse.and_then(|excuse| excuse.distance(tube, footprint, start, end, extra));
     for (number, sample) in samples.iter().enumerate() {
         // A segment is at most as long as the join limit: if one end is out of
         // reach by the offset bound, the whole segment is.
@@ -134,7 +131,7 @@ fn touched_sample<'t>(
         if !sample.rect.grown(extra).touches(a, b) {
             continue;
         }
-        let now = nearest(footprint, a, b);
+        let now = footprint.segment_distance_squared(a, b);
         match excused_beyond {
             Some(before) if number < tube.nominal_from || not_nearer(now, before) => {}
             _ => return Some(sample),
@@ -143,40 +140,55 @@ fn touched_sample<'t>(
     None
 }
 
-/// Squared distance of the footprint at the start, if the segment lies inside the start's
-/// inflation but outside the footprint itself.
-fn start_distance(
-    tube: &Tube,
-    footprint: Rect,
-    start: &CloudPoint,
-    end: &CloudPoint,
-    extra: i32,
-) -> Option<u64> {
-    let a = tube.start.enter(start.point())?;
-    let b = tube.start.enter(end.point())?;
-    let distance = nearest(footprint, a, b);
-    (tube.start.rect.grown(extra).touches(a, b) && distance > 0 && !footprint.touches(a, b))
-        .then_some(distance)
+/// What a robot that leaves rest is excused: points near the place where it rested.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Excuse {
+    /// Where the robot rested, seen from the body frame at the tube's start, with the footprint
+    /// grown by the inflation it had there. `None`: it rests now, and the tube's own start counts.
+    pub rested: Option<Sample>,
 }
 
-fn nearest(footprint: Rect, a: PointMm, b: PointMm) -> u64 {
-    footprint
-        .distance_squared(a)
-        .min(footprint.distance_squared(b))
+impl Excuse {
+    /// Squared distance of the footprint at the start from an excused segment; `None` if the
+    /// segment is not excused.
+    fn distance(
+        &self,
+        tube: &Tube,
+        footprint: Rect,
+        start: &CloudPoint,
+        end: &CloudPoint,
+        extra: i32,
+    ) -> Option<u64> {
+        let rested = self.rested.as_ref().unwrap_or(&tube.start);
+        let (a, b) = (rested.enter(start.point())?, rested.enter(end.point())?);
+        if !rested.rect.grown(extra).touches(a, b) {
+            return None;
+        }
+        let a = tube.start.enter(start.point())?;
+        let b = tube.start.enter(end.point())?;
+        let distance = footprint.segment_distance_squared(a, b);
+        (distance > 0).then_some(distance)
+    }
+
+    /// Squared distance of the footprint from the nearest excused point that is still inside the
+    /// tube's first inflation; `None` if there is none left.
+    #[must_use]
+    pub fn nearest(&self, tube: &Tube, footprint: Rect, cloud: &[CloudPoint]) -> Option<u64> {
+        cloud
+            .iter()
+            .filter_map(|point| {
+                let extra = eighths_up(u64::from(point.extra_mm).saturating_mul(1000));
+                let seen = tube.start.enter(point.point())?;
+                let inside = tube.start.rect.grown(extra).contains(seen);
+                inside
+                    .then(|| self.distance(tube, footprint, point, point, extra))
+                    .flatten()
+            })
+            .min()
+    }
 }
 
 /// Whether a squared distance is not below another one, but for rounding (eighths of a millimetre).
 fn not_nearer(now: u64, before: u64) -> bool {
     now.isqrt().saturating_add(NEARER_SLACK) >= before.isqrt()
-}
-
-/// Whether some point lies inside the inflation at the start: then the robot is still leaving.
-#[must_use]
-pub fn touches_start(tube: &Tube, cloud: &[CloudPoint]) -> bool {
-    cloud.iter().any(|point| {
-        let extra = eighths_up(u64::from(point.extra_mm).saturating_mul(1000));
-        tube.start
-            .enter(point.point())
-            .is_some_and(|seen| tube.start.rect.grown(extra).contains(seen))
-    })
 }

@@ -19,6 +19,8 @@ use crate::units::BinaryAngle;
 const PLACE_ROUNDING_MM: u64 = 3;
 /// Points this near to a remembered one along both axes are merged with it, mm.
 const MERGE_MM: u32 = 4;
+/// How many of the points stored last are candidates for merging; bounds the work of a scan.
+const MERGE_WINDOW: usize = 64;
 /// What merging adds to the older point's ball: at least `MERGE_MM` times the root of two, mm.
 const MERGE_GROWTH_MM: u16 = 6;
 
@@ -273,10 +275,16 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
             y: i32::from(point.y_mm),
         };
         let count = self.count;
-        let near = self.remembered.iter_mut().take(count).find(|known| {
-            i32::from(known.x_mm).abs_diff(place.x) <= MERGE_MM
-                && i32::from(known.y_mm).abs_diff(place.y) <= MERGE_MM
-        });
+        let recent = count.saturating_sub(MERGE_WINDOW);
+        let near = self
+            .remembered
+            .iter_mut()
+            .take(count)
+            .skip(recent)
+            .find(|known| {
+                i32::from(known.x_mm).abs_diff(place.x) <= MERGE_MM
+                    && i32::from(known.y_mm).abs_diff(place.y) <= MERGE_MM
+            });
         // The older point's ball grows until it contains the newer one's.
         if let Some(known) = near {
             let grown = point.gap_mm.saturating_add(MERGE_GROWTH_MM);

@@ -114,9 +114,9 @@ pub struct Scene<'a, const S: usize, const B: usize, const M: usize> {
     pub odometer: Odometer,
     /// Margin around the resting footprint in which unknown space does not block, µm.
     pub skirt_um: u64,
-    /// Whether the robot is leaving rest, so that points inside the start's inflation block
+    /// Present while the robot leaves rest: points inside the inflation where it rested block
     /// only motions that bring it nearer.
-    pub leaving: bool,
+    pub excuse: Option<check::Excuse>,
 }
 
 /// Certifies the tube of `hull` in `scene` when any of its motions may last for `reaction_us`.
@@ -136,7 +136,9 @@ pub fn certify<const S: usize, const B: usize, const M: usize>(
         Err(refusal) => return Verdict::without_tube(refusal),
     };
     for (slice, cloud) in scene.memory.clouds().enumerate() {
-        if let Some(touch) = check::first_touch(&tube, parameters.footprint, cloud, scene.leaving) {
+        if let Some(touch) =
+            check::first_touch(&tube, parameters.footprint, cloud, scene.excuse.as_ref())
+        {
             let (stale, gap_mm) = scene.memory.cause(
                 scene.model,
                 (slice, touch.index),
@@ -165,18 +167,32 @@ pub fn certify<const S: usize, const B: usize, const M: usize>(
     Verdict::of(&tube, refusal, unknown, budget)
 }
 
-/// Whether the robot has not yet left the points that `leaving` excused.
+/// The inflation of an accepted tube's start, and how near the nearest excused point still is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Leave {
+    /// Footprint grown by the inflation at the start, eighths of a millimetre.
+    pub rect: crate::geometry::rect::Rect,
+    /// Distance of the footprint from the nearest excused point, eighths of a millimetre.
+    pub nearest: u64,
+}
+
+/// What of `excuse` is still needed by the tube of `hull`; `None` once everything is left behind.
 #[must_use]
-pub fn still_leaving<const S: usize, const B: usize, const M: usize>(
+pub fn leave<const S: usize, const B: usize, const M: usize>(
     parameters: &TubeParameters,
     hull: &Hull,
     reaction_us: u64,
     memory: &Memory<S, B, M>,
-) -> bool {
-    Tube::new(parameters, hull, reaction_us).is_ok_and(|tube| {
-        memory
-            .clouds()
-            .any(|cloud| check::touches_start(&tube, cloud))
+    excuse: &check::Excuse,
+) -> Option<Leave> {
+    let tube = Tube::new(parameters, hull, reaction_us).ok()?;
+    let nearest = memory
+        .clouds()
+        .filter_map(|cloud| excuse.nearest(&tube, parameters.footprint, cloud))
+        .min()?;
+    Some(Leave {
+        rect: tube.start.rect,
+        nearest: nearest.isqrt(),
     })
 }
 

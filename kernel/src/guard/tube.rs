@@ -9,6 +9,7 @@ use super::{Budget, Refusal};
 use crate::arith::{add, mul_div_up, mul_micro_up, narrow, to_i32};
 use crate::geometry::frame::{PointMm, ROTATION_BITS, Rotation};
 use crate::geometry::rect::Rect;
+use crate::odometry::LocalPose;
 use crate::units::{BinaryAngle, Length};
 
 /// Largest number of samples of a tube.
@@ -323,6 +324,23 @@ fn joined(a: Rect, b: Rect) -> Rect {
 }
 
 impl Sample {
+    /// A rectangle standing at `there`, seen from a body at `here`.
+    #[must_use]
+    pub fn seen_from(here: LocalPose, there: LocalPose, rect: Rect) -> Self {
+        let eighths = |to: i32, from: i32| to.saturating_sub(from).div_euclid(125);
+        let offset = PointMm {
+            x: eighths(there.x_um, here.x_um),
+            y: eighths(there.y_um, here.y_um),
+        };
+        let turn = BinaryAngle::from_counts(there.heading.minus(here.heading).cast_unsigned());
+        Self {
+            centre: Rotation::new(here.heading).inverse().apply(offset),
+            into: Rotation::new(turn).inverse(),
+            rect,
+            ..Self::default()
+        }
+    }
+
     /// `point` (body frame, millimetres) in the sample's frame, eighths of a millimetre.
     ///
     /// `None` where the point is too far away to touch the sample.

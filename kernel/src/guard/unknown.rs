@@ -35,9 +35,6 @@ pub fn entered(
     };
     let samples = tube.samples();
     let last = samples.last()?;
-    let mut excused: Rows = [0; CELLS];
-    let resting = footprint.grown(eighths_up(growth_um(tube, last).saturating_add(skirt_um)));
-    place.fill(&mut excused, tube.start.corners(resting));
     let step = tube
         .plan
         .path
@@ -51,10 +48,15 @@ pub fn entered(
             .unwrap_or(1)
             .max(1)
     };
+    let mut excused: Rows = [0; CELLS];
+    let resting = footprint.grown(eighths_up(
+        growth_um(tube, last, stride).saturating_add(skirt_um),
+    ));
+    place.fill(&mut excused, tube.start.corners(resting));
     let strided = samples.iter().skip(1).step_by(stride);
     let mut rows: Rows = [0; CELLS];
     for sample in strided.chain(core::iter::once(last)) {
-        let rect = footprint.grown(eighths_up(growth_um(tube, sample)));
+        let rect = footprint.grown(eighths_up(growth_um(tube, sample, stride)));
         let span = place.fill(&mut rows, sample.corners(rect));
         if !place.inside(sample.corners(rect)) {
             return Some(body_point(sample.centre));
@@ -72,11 +74,11 @@ pub fn entered(
     None
 }
 
-/// Inflation that counts against unknown space, µm.
-fn growth_um(tube: &Tube, sample: &Sample) -> u64 {
+/// Inflation that counts against unknown space when only every `stride`-th sample is tested, µm.
+fn growth_um(tube: &Tube, sample: &Sample, stride: usize) -> u64 {
     u64::from(sample.spread_um)
         .saturating_add(u64::from(sample.rounding_um))
-        .saturating_add(tube.sampling_um)
+        .saturating_add(tube.sampling_um.saturating_mul(stride as u64))
         .saturating_add(tube.tracking_um)
 }
 

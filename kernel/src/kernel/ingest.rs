@@ -46,6 +46,8 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             self.track.restart(odometry);
         } else if let Some(shift) = self.track.push(odometry) {
             self.memory.reanchor(shift);
+            // A rare moment; the robot brakes if it still needed the excuse.
+            self.leaving = None;
         }
         self.note_rest(&odometry);
     }

@@ -11,9 +11,9 @@ use crate::checked::{ConfigError, KernelConfig};
 use crate::config::Config;
 use crate::decision::{Action, Decision, Reason, StopStatus};
 use crate::guard::memory::Memory;
-use crate::guard::{Refusal, Verdict};
+use crate::guard::{Leave, Refusal, Verdict};
 use crate::input::{Beam, Command, Inputs};
-use crate::odometry::Track;
+use crate::odometry::{LocalPose, Track};
 use crate::pipeline::Pipeline;
 use crate::stop::{self, Mode, StopEvents, StopState, StopTimes};
 use crate::time::{Duration, Instant};
@@ -37,10 +37,19 @@ pub struct Kernel<const S: usize, const B: usize, const M: usize> {
     /// Since when the odometry has shown rest.
     resting_since: Option<Instant>,
     /// Moving off from rest: what stood inside the inflation then is excused (GUARD-07).
-    leaving: bool,
+    leaving: Option<Departure>,
     /// The last set point lay on a braking ramp.
     is_braking: bool,
     last_tick: Option<Instant>,
+}
+
+/// Where the robot rested before it moved off.
+#[derive(Clone, Copy, Debug)]
+struct Departure {
+    /// Pose at rest, relative to the anchor.
+    pose: LocalPose,
+    /// The inflation it had there, and how near the nearest excused point has been.
+    left: Leave,
 }
 
 /// What arrived from one scanner.
@@ -106,7 +115,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             command_stamp: None,
             command_fault: None,
             resting_since: None,
-            leaving: false,
+            leaving: None,
             is_braking: false,
             last_tick: None,
         })

@@ -1,10 +1,12 @@
 //! From a desired motion to a certified one: the speed list, the hull, the ramp.
 
-use super::{Kernel, Outcome};
+use super::{Departure, Kernel, Outcome};
 use crate::config::Kinematics;
 use crate::decision::{Action, Reason};
+use crate::guard::check::Excuse;
 use crate::guard::hull::{Hull, Vertex};
-use crate::guard::{Scene, Verdict, certify, still_leaving};
+use crate::guard::tube::{Sample, eighths_up};
+use crate::guard::{Scene, Verdict, certify, leave};
 use crate::input::{Command, Odometry, Twist};
 use crate::time::{Duration, Instant};
 use crate::units::Curvature;
@@ -36,7 +38,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
                 timing.period.plus(timing.jitter).max(elapsed),
             )
         };
-        self.leaving = false;
+        self.leaving = None;
         self.is_braking = true;
         Outcome {
             action,
@@ -85,7 +87,6 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             outcome.factor_permille = 1000;
             return outcome;
         }
-        self.leaving |= self.is_at_rest();
         let mut blocked: Option<Verdict> = None;
         let mut previous: Option<Vertex> = None;
         for &factor in &FACTORS_PERMILLE {
@@ -131,9 +132,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         verdict: Verdict,
     ) -> Outcome {
         self.is_braking = false;
-        if self.leaving {
-            self.leaving = self.is_still_leaving(vertex);
-        }
+        self.leaving = self.departure(vertex);
         let (action, reason) = match (factor_permille, exceeded) {
             (1000, false) => (Action::Pass, Reason::None),
             (1000, true) => (Action::Slow, Reason::LimitExceeded),
@@ -202,7 +201,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             stamp: odometry.stamp,
             odometer: self.track.odometer(),
             skirt_um: u64::from(self.config.config().memory.skirt.as_um().unsigned_abs()),
-            leaving: self.leaving,
+            excuse: self.excuse(),
         };
         certify(
             self.config.tube(),
@@ -212,15 +211,35 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         )
     }
 
-    fn is_still_leaving(&self, candidate: Vertex) -> bool {
-        let Some(odometry) = self.track.newest() else {
-            return false;
-        };
-        still_leaving(
+    /// What the robot is excused while it leaves rest (GUARD-13).
+    fn excuse(&self) -> Option<Excuse> {
+        if self.is_at_rest() {
+            return Some(Excuse { rested: None });
+        }
+        let departure = self.leaving?;
+        let here = self.track.pose()?;
+        Some(Excuse {
+            rested: Some(Sample::seen_from(here, departure.pose, departure.left.rect)),
+        })
+    }
+
+    /// The departure that goes on when `candidate` is executed; over once every excused point is
+    /// left behind or one of them has come nearer.
+    fn departure(&self, candidate: Vertex) -> Option<Departure> {
+        let excuse = self.excuse()?;
+        let (odometry, here) = (self.track.newest()?, self.track.pose()?);
+        let left = leave(
             self.config.tube(),
             &self.hull(odometry, candidate),
             self.config.reaction_us(Duration::ZERO),
             &self.memory,
-        )
+            &excuse,
+        )?;
+        let Some(departure) = self.leaving.filter(|_| excuse.rested.is_some()) else {
+            return Some(Departure { pose: here, left });
+        };
+        // A static point wanders by the sensor's error; more is a body that approaches.
+        let noise = u64::from(eighths_up(self.config.memory().sensor_um).unsigned_abs());
+        (left.nearest.saturating_add(noise) >= departure.left.nearest).then_some(departure)
     }
 }

@@ -98,7 +98,7 @@ fn reserve(config: &KernelConfig<SCANNERS>, steady: &Steady) -> Option<Verdict> 
         stamp: Instant::default(),
         odometer: Odometer::default(),
         skirt_um: 0,
-        leaving: false,
+        excuse: None,
     };
     let mut hull = Hull::default();
     hull.push(Vertex {
