@@ -17,6 +17,14 @@ pub(crate) fn of_kernel(error: ConfigError) -> (String, String, String) {
         ConfigError::ObstacleSpeed => plain("obstacles.speed_mps"),
         ConfigError::Curvature => plain("steering"),
         ConfigError::NoScanner => plain(""),
+        ConfigError::Ramps => (
+            "limits".to_owned(),
+            "commands may accelerate faster than the robot surely brakes: it could not follow the ramp to rest"
+                .to_owned(),
+            "lower acceleration_mps2 to at most braking_mps2, and angular_acceleration_radps2 to at \
+             most angular_braking_radps2"
+                .to_owned(),
+        ),
         ConfigError::Pipeline => (
             "timing.period_s".to_owned(),
             "more commands are in flight than the kernel can hold".to_owned(),
