@@ -38,6 +38,21 @@ impl Judge {
         }
     }
 
+    /// Distance from a point to each body at `t_s`.
+    #[must_use]
+    pub fn distances_from(&self, world: &World, point: [f64; 2], t_s: f64) -> Vec<f64> {
+        let dot = isometry(&Pose::new(point[0], point[1], 0.0));
+        self.shapes
+            .iter()
+            .enumerate()
+            .map(|(index, shape)| {
+                let body = isometry(&world.pose(index, t_s));
+                query::distance(&dot, &Ball::new(0.0), &body, shape.as_ref())
+                    .map_or(0.0, |found| found.distance)
+            })
+            .collect()
+    }
+
     /// Distance from the footprint at `robot` to each body at `t_s`; zero means contact.
     #[must_use]
     pub fn distances(&self, world: &World, robot: &Pose, t_s: f64) -> Vec<f64> {

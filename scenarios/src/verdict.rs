@@ -155,7 +155,7 @@ fn course(sentences: &mut Sentences, expect: &Expect, run: &RunResult) {
     let Some(before) = &expect.stopped_before else {
         return;
     };
-    sentences.demand(run.at_rest, || {
+    sentences.demand(stands(run), || {
         "The robot still moves at the end.".to_owned()
     });
     if let Some(least) = before.clearance_m {
@@ -193,12 +193,8 @@ fn course(sentences: &mut Sentences, expect: &Expect, run: &RunResult) {
 fn stops(sentences: &mut Sentences, scenario: &Scenario, run: &RunResult) {
     let expect = &scenario.expect;
     if let Some(blocked) = expect.blocked {
-        let held = run.at_rest
-            && !run.reached
-            && run
-                .decisions
-                .last()
-                .is_some_and(|d| d.decision != "Pass" && d.decision != "Slow");
+        let refused = stopping_after(run, run.time_s - STAND_S).is_some();
+        let held = stands(run) && !run.reached && refused;
         sentences.demand(held == blocked, || {
             let last = run.decisions.last();
             let (decision, reason) =
@@ -236,6 +232,24 @@ fn stops(sentences: &mut Sentences, scenario: &Scenario, run: &RunResult) {
             },
         );
     }
+}
+
+/// How long a robot must have stood to count as standing at the end.
+const STAND_S: f64 = 2.0;
+
+/// Whether the robot stood, or crept by less than 50 mm and 0.05 rad, at the end.
+///
+/// A guard that refuses may still let a tick of motion through when noise favours it, so the
+/// instantaneous speed of the last step says little.
+fn stands(run: &RunResult) -> bool {
+    let Some(last) = run.samples.last().map(|sample| sample.pose) else {
+        return true;
+    };
+    let recent = run.samples.iter().filter(|s| s.t_s >= run.time_s - STAND_S);
+    recent.map(|sample| sample.pose).all(|pose| {
+        let turn = crate::math::wrap(pose.theta_rad - last.theta_rad);
+        libm::hypot(pose.x_m - last.x_m, pose.y_m - last.y_m) < 0.05 && turn.abs() < 0.05
+    })
 }
 
 /// First moment from `t_s` on at which a stop or brake decision is in force.

@@ -165,7 +165,7 @@ impl<'a> Host<'a> {
     }
 
     /// The guarded way: kernel, then monitors.
-    fn decide(&mut self, t_us: u64, inputs: &TickInputs, engine: &Engine<'_>) -> SetPoint {
+    fn decide(&mut self, t_us: u64, inputs: &TickInputs, engine: &mut Engine<'_>) -> SetPoint {
         let now_us = (t_us + self.base_us).saturating_sub(self.faults.clock_back_us(t_us));
         let Some(controller) = &mut self.controller else {
             return self.sent;
@@ -184,6 +184,12 @@ impl<'a> Host<'a> {
             &pose_at,
             (engine.pose(), rested),
         ));
+        let before = self.decision.map(|d| d.status);
+        if before != Some(StopStatus::Running) && record.status == StopStatus::Running {
+            if inputs.reset_us.is_some() {
+                engine.vouch(t_us, self.monitors.seen());
+            }
+        }
         self.decision = Some(record);
         record.set_point
     }

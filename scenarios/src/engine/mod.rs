@@ -174,6 +174,27 @@ impl<'a> Engine<'a> {
             .distances(&self.world, &self.pose(), seconds(t_us))
     }
 
+    /// At a reset the operator vouches for a disc; what is in it and was never seen breaks A-START.
+    fn vouch(&mut self, t_us: u64, seen: &[Option<f64>]) {
+        let (pose, radius_m) = (self.pose(), self.robot.values.memory.clear_at_start_m);
+        let t_s = seconds(t_us);
+        let distances = self.judge.distances_from(&self.world, [pose.x, pose.y], t_s);
+        for (index, (body, distance)) in self.world.bodies().iter().zip(distances).enumerate() {
+            let unseen = seen.get(index).is_some_and(Option::is_none);
+            if distance < radius_m && unseen && !body.invisible {
+                self.broken.push(Broken {
+                    id: "A-START",
+                    what: format!(
+                        "{} stands {distance:.2} m from the rotation centre at the reset, unseen",
+                        body.name
+                    ),
+                    body: Some(index),
+                    from_s: t_s,
+                });
+            }
+        }
+    }
+
     /// Triggers, sweeps and odometry samples that are complete at `t_us`.
     fn sense(&mut self, t_us: u64) {
         let pose = self.pose();

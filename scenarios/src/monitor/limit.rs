@@ -12,6 +12,8 @@ const ROUNDING: f64 = 5e-6;
 pub(super) struct Limit {
     pub(super) ledger: Ledger,
     before: Option<(u64, SetPoint)>,
+    /// Whether the newest command asks for standstill: braking, which no window limits.
+    rest_wanted: bool,
 }
 
 impl Limit {
@@ -19,11 +21,16 @@ impl Limit {
         Self {
             ledger: Ledger::new("LIMIT"),
             before: None,
+            rest_wanted: false,
         }
     }
 
     pub(super) fn tick(&mut self, robot: &Robot, tick: &Tick<'_>) {
         let set_point = tick.decision.set_point;
+        if let Some(command) = tick.inputs.command {
+            let motion = command.motion;
+            self.rest_wanted = motion.speed() == 0.0 && motion.turn_rate() == 0.0;
+        }
         self.ledger.judged(tick.decision.moves());
         for what in outside(robot, set_point) {
             self.ledger.violated(tick.t_s, what);
@@ -42,12 +49,9 @@ impl Limit {
         let dt_s = now_us.saturating_sub(then_us) as f64 * 1e-6;
         let limits = &robot.values.limits;
         let allowed = |from: f64, to: f64, up: f64, down: f64| {
-            let rate = if to.abs() > from.abs() {
-                up
-            } else {
-                up.max(down)
-            };
-            (to - from).abs() <= rate * dt_s + ROUNDING
+            let slows = to.abs() <= from.abs();
+            let rate = if slows { up.max(down) } else { up };
+            (slows && self.rest_wanted) || (to - from).abs() <= rate * dt_s + ROUNDING
         };
         let (up, down) = (limits.acceleration_mps2, limits.braking_mps2);
         if !allowed(before.speed(), set_point.speed(), up, down) {
