@@ -24,6 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut out = String::new();
     write_kernel_hashes(&root, &mut out)?;
     write_citations(&root, &mut out)?;
+    write_scenarios(&root, &mut out)?;
     let target = PathBuf::from(std::env::var("OUT_DIR")?).join("provenance.rs");
     std::fs::write(target, out)?;
     Ok(())
@@ -71,6 +72,21 @@ fn write_citations(root: &Path, out: &mut String) -> Result<(), Box<dyn std::err
                 .is_some_and(|next| next.starts_with("//= type=test"));
             writeln!(out, "    ({id:?}, {file:?}, {}, {is_test}),", index + 1)?;
         }
+    }
+    out.push_str("];\n");
+    Ok(())
+}
+
+/// The shipped scenarios, so that the command works outside a checkout.
+fn write_scenarios(root: &Path, out: &mut String) -> Result<(), Box<dyn std::error::Error>> {
+    let mut files = Vec::new();
+    list(root, "scenarios/files", &mut files)?;
+    files.sort();
+    out.push_str("pub const EMBEDDED_SCENARIOS: &[(&str, &str)] = &[\n");
+    for file in files.iter().filter(|file| file.ends_with(".toml")) {
+        let text = std::fs::read_to_string(root.join(file))?;
+        let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
+        writeln!(out, "    ({stem:?}, {text:?}),")?;
     }
     out.push_str("];\n");
     Ok(())

@@ -45,12 +45,13 @@ Example:
     Certify(CertifyArgs),
     /// Drive one scenario; print a summary, draw it, write its trace.
     #[command(after_help = "\
-Writes NAME.svg, NAME.png and NAME.trace.jsonl to the output folder. The trace holds one line per
-dynamics step, so that anybody can recount the contacts.
+Writes run.svg, run.png and trace.jsonl to the output folder. The trace holds one line per dynamics
+step, so that anybody can recount the contacts. Exit code 1 if the run did not come out as its file
+expects.
 
 Examples:
   haltline run scenarios/files/corridor_ahead.toml
-  haltline run scenarios/files/crossing_left.toml --variant t=-0.5 --naked
+  haltline run FILE --variant NAME --naked
   haltline run FILE --json | jq .min_clearance_m")]
     Run(RunArgs),
     /// Let the kernel watch a recorded drive: where would it have slowed or stopped, and why?
@@ -99,6 +100,9 @@ pub struct RunArgs {
     /// Run without the guard.
     #[arg(long)]
     pub naked: bool,
+    /// Robot file, instead of the robot that the scenario names.
+    #[arg(long, value_name = "FILE")]
+    pub robot: Option<PathBuf>,
     /// Folder to write picture and trace to.
     #[arg(long, value_name = "DIR", default_value = "out/run")]
     pub out: PathBuf,

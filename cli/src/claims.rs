@@ -66,7 +66,8 @@ pub struct Evidence {
 
 impl Evidence {
     /// No evidence, with the reason.
-    fn none(words: impl Into<String>) -> Self {
+    #[must_use]
+    pub fn none(words: impl Into<String>) -> Self {
         Self {
             kind: EvidenceKind::None,
             words: words.into(),
@@ -123,6 +124,8 @@ pub struct Claim {
 pub struct Replay {
     /// Folder of the scenario files as the user may type it.
     pub folder: String,
+    /// Robot file, if it must be named.
+    pub robot: Option<String>,
     /// Control period, seconds.
     pub period_s: f64,
 }
@@ -132,10 +135,14 @@ impl Replay {
     #[must_use]
     pub fn command(&self, case: &CaseResult) -> String {
         let file = format!("{}/{}.toml", self.folder, case.group);
-        match case.name.strip_prefix(&format!("{}/", case.group)) {
-            Some(variant) => format!("haltline run {file} --variant '{variant}'"),
-            None => format!("haltline run {file}"),
+        let mut command = format!("haltline run {file}");
+        if let Some(variant) = case.name.strip_prefix(&format!("{}/", case.group)) {
+            command.push_str(&format!(" --variant '{variant}'"));
         }
+        if let Some(robot) = &self.robot {
+            command.push_str(&format!(" --robot {robot}"));
+        }
+        command
     }
 
     fn tick(&self, t_s: f64) -> Option<u64> {

@@ -14,9 +14,9 @@ use haltline_spec::requirements::{
 pub fn explain(id: Option<&str>) -> Result<Exit, Failure> {
     let Some(id) = id else {
         print_list(&requirements());
-        println!("\nAssumptions:");
+        say!("\nAssumptions:");
         for found in assumptions() {
-            println!("  {:<14} {}", style(found.id).bold(), first_line(&found.text));
+            say!("  {:<14} {}", style(found.id).bold(), first_line(&found.text));
         }
         return Ok(Exit::Holds);
     };
@@ -46,26 +46,26 @@ fn print_list(list: &[Requirement]) {
     for found in list {
         if family != Some(found.family) {
             family = Some(found.family);
-            println!("{}", style(found.family.prefix()).bold().underlined());
+            say!("{}", style(found.family.prefix()).bold().underlined());
         }
-        println!("  {:<11} {}", style(found.id).bold(), found.must);
+        say!("  {:<11} {}", style(found.id).bold(), found.must);
     }
 }
 
 fn print_requirement(found: &Requirement) {
-    println!("{}  {}:{}", style(found.id).bold(), found.file, found.line);
-    println!("\n{}\n", found.text);
-    println!("{}", style("Assumes").bold());
+    say!("{}  {}:{}", style(found.id).bold(), found.file, found.line);
+    say!("\n{}\n", found.text);
+    say!("{}", style("Assumes").bold());
     if found.assumes.is_empty() {
-        println!("  nothing");
+        say!("  nothing");
     }
     for id in &found.assumes {
         let text = assumption(id).map_or_else(String::new, |a| first_line(&a.text));
-        println!("  {id:<14} {text}");
+        say!("  {id:<14} {text}");
     }
-    println!("{}", style("Evidence").bold());
+    say!("{}", style("Evidence").bold());
     for line in evidence(found) {
-        println!("  {line}");
+        say!("  {line}");
     }
 }
 
@@ -93,14 +93,14 @@ pub fn evidence(found: &Requirement) -> Vec<String> {
 }
 
 fn print_assumption(found: &Assumption) {
-    println!("{}  {}:{}", style(found.id).bold(), found.file, found.line);
-    println!("\n{}\n", found.text);
+    say!("{}  {}:{}", style(found.id).bold(), found.file, found.line);
+    say!("\n{}\n", found.text);
     let used: Vec<&str> = requirements()
         .iter()
         .filter(|r| r.assumes.contains(&found.id))
         .map(|r| r.id)
         .collect();
-    println!("{}\n  {}", style("Used by").bold(), used.join(" "));
+    say!("{}\n  {}", style("Used by").bold(), used.join(" "));
 }
 
 fn unknown(id: &str) -> Failure {

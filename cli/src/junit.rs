@@ -63,13 +63,17 @@ fn claim_case(claim: &Claim) -> TestCase {
     test
 }
 
-/// A counterexample in one line.
+/// Where and when a counterexample was found.
 #[must_use]
-pub fn sentence(found: &Counterexample) -> String {
-    let when = match (found.t_s, found.tick) {
-        (Some(t_s), Some(tick)) => format!(" at {t_s:.3} s (tick {tick})"),
-        (Some(t_s), None) => format!(" at {t_s:.3} s"),
-        _ => String::new(),
-    };
-    format!("{}{when}: {} -- replay: {}", found.case, found.what, found.replay)
+pub fn when(found: &Counterexample) -> String {
+    match (found.t_s, found.tick) {
+        (Some(t_s), Some(tick)) => format!("{} at {t_s:.3} s (tick {tick})", found.case),
+        (Some(t_s), None) => format!("{} at {t_s:.3} s", found.case),
+        _ => found.case.clone(),
+    }
+}
+
+/// A counterexample in one line.
+fn sentence(found: &Counterexample) -> String {
+    format!("{}: {} -- replay: {}", when(found), found.what, found.replay)
 }

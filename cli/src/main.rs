@@ -3,17 +3,31 @@
 // Drawing rounds floats to pixels and indices all over; nothing here is part of the safety core.
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
+/// Prints a line; a reader that went away (`haltline ... | head`) is no reason to complain.
+macro_rules! say {
+    ($($words:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout(), $($words)*);
+    }};
+}
+
 mod args;
 mod certificate;
+mod certify;
 mod claims;
 mod explain;
 mod failure;
 mod junit;
+mod library;
 mod new;
 mod picture;
 mod provenance;
+mod replay;
 mod report;
+mod run;
 mod sena;
+mod terminal;
+mod timing;
 
 use args::{Cli, Command, New};
 use clap::Parser as _;
@@ -37,6 +51,9 @@ fn dispatch(command: Option<Command>) -> Result<Exit, Failure> {
         Some(Command::New {
             what: New::Robot { file },
         }) => new::robot(&file),
-        _ => Ok(Exit::Holds),
+        Some(Command::Replay(args)) => replay::replay(&args),
+        Some(Command::Certify(args)) => certify::certify(&args),
+        Some(Command::Run(args)) => run::run(&args),
+        None => certify::default_robot(),
     }
 }

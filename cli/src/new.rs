@@ -21,8 +21,8 @@ pub fn robot(path: &Path) -> Result<Exit, Failure> {
     })?;
     file.write_all(haltline_robots::template().as_bytes())
         .map_err(|error| Failure::write(path, &error))?;
-    println!("wrote {}", path.display());
-    println!(
+    say!("wrote {}", path.display());
+    say!(
         "Replace each value by that of your robot, then run: haltline certify {}",
         path.display()
     );

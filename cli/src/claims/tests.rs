@@ -67,6 +67,7 @@ fn suite(guarded: RunResult, naked: Option<RunResult>) -> SuiteResult {
 fn replay() -> Replay {
     Replay {
         folder: "my".into(),
+        robot: None,
         period_s: 0.04,
     }
 }
@@ -99,6 +100,17 @@ fn a_violation_names_time_tick_and_replay() {
     let found = &zone.counterexamples[0];
     assert_eq!((found.t_s, found.tick), (Some(0.4), Some(10)));
     assert_eq!(found.replay, "haltline run my/poles.toml --variant 'gap=0.9'");
+}
+
+#[test]
+fn a_robot_of_ones_own_is_named_in_the_replay() {
+    let own = Replay {
+        robot: Some("my.toml".into()),
+        ..replay()
+    };
+    let suite = suite(run(vec![]), None);
+    let command = own.command(&suite.cases[0]);
+    assert_eq!(command, "haltline run my/poles.toml --variant 'gap=0.9' --robot my.toml");
 }
 
 #[test]

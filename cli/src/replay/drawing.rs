@@ -62,16 +62,18 @@ pub fn close_up(scene: &Scene<'_>, index: usize) -> Option<Picture> {
     let event = scene.events.get(index)?;
     let moment = scene.moments.get(event.first)?;
     let judged = scene.judged.get(event.first)?;
+    // Between two rows, the newest sweep is the one before.
+    let swept = scene.moments.get(..=event.first)?.iter().rev().find(|m| m.row.is_some())?;
     let [x, y, _] = moment.pose;
     let view = View::fit([x - HALF_M, y - HALF_M], [x + HALF_M, y + HALF_M], [0.0, 0.0], [SIDE, SIDE]);
     let title = format!("{}. {}", index + 1, event.sentence());
     let mut picture = Picture::new(SIDE, SIDE + 46.0, title.clone());
     picture.rect([0.0, 0.0], [SIDE, SIDE + 46.0], Style::Paper);
-    draw_free(&mut picture, std::slice::from_ref(moment), &view);
+    draw_free(&mut picture, std::slice::from_ref(swept), &view);
     let near = |p: &[f64; 2]| (p[0] - x).abs() < HALF_M && (p[1] - y).abs() < HALF_M;
     let memory: Vec<_> = judged.memory_m.iter().copied().filter(near).collect();
     picture.dots(view.all(&memory), 5.0, Style::Memory);
-    let returns: Vec<_> = moment.returns_m.iter().copied().filter(near).collect();
+    let returns: Vec<_> = swept.returns_m.iter().copied().filter(near).collect();
     picture.dots(view.all(&returns), 3.0, Style::Scan);
     draw_path(&mut picture, scene, &view);
     draw_event(&mut picture, scene, event, index + 1, &view);
@@ -79,7 +81,7 @@ pub fn close_up(scene: &Scene<'_>, index: usize) -> Option<Picture> {
     draw_scale(&mut picture, &view);
     picture.text([12.0, SIDE + 20.0], Anchor::Start, Style::LabelStrong, title);
     let about = format!(
-        "black: this sweep   teal: {} remembered points   green: seen free   red: footprint and deciding point",
+        "black: newest sweep   teal: {} remembered points   green: seen free   red: footprint and deciding point",
         judged.memory_m.len()
     );
     picture.text([12.0, SIDE + 38.0], Anchor::Start, Style::Label, about);

@@ -3,59 +3,139 @@
 use crate::picture::view::{Pose, transform};
 use crate::sena::Log;
 
-/// The drive at the time of one row.
+/// Rows on either side over which a motion is averaged: increments and stamps of a log often come
+/// from different clocks, and single rows then jump.
+const SMOOTHING: usize = 2;
+
+/// The drive at the time of one tick of the kernel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
     /// Time since the start, seconds.
     pub t_s: f64,
     /// Pose in the frame of the first row.
     pub pose: Pose,
-    /// Motion since the row before, m/s and rad/s: what the odometry measured.
-    pub measured: [f64; 2],
-    /// Motion until the next row: what the driver wanted.
+    /// Motion one tick earlier, m/s and rad/s: what the drive was told.
+    pub told: [f64; 2],
+    /// Motion now: what the odometry measures.
+    pub speed: [f64; 2],
+    /// Motion one tick later: what the driver wanted.
     pub wanted: [f64; 2],
-    /// Returns of the sweep in the frame of the first row, metres.
+    /// Index of the row whose sweep ended now; none between two rows.
+    pub row: Option<usize>,
+    /// Returns of that sweep in the frame of the first row, metres.
     pub returns_m: Vec<[f64; 2]>,
     /// Corners of the area that the sweep saw free: the laser, then each valid return.
     pub seen_m: Vec<[f64; 2]>,
 }
 
-/// All moments of a log.
+/// All ticks: one at each row, and more between two rows that are farther apart than the period.
 #[must_use]
-pub fn course(log: &Log) -> Vec<Moment> {
-    let mut pose = [0.0, 0.0, 0.0];
-    let mut twists = Vec::with_capacity(log.rows.len());
-    let mut moments: Vec<Moment> = Vec::with_capacity(log.rows.len());
-    let mut last_t_s = None;
-    for row in &log.rows {
-        let [dx, dy, dtheta] = row.increment_m_rad;
-        let [x, y] = transform(pose, [dx, dy]);
-        pose = [x, y, pose[2] + dtheta];
-        let measured = last_t_s.map_or([0.0, 0.0], |last| twist(row.increment_m_rad, row.t_s - last));
-        last_t_s = Some(row.t_s);
-        twists.push(measured);
-        let (returns_m, seen_m) = sweep(log, &row.ranges_m, pose);
+pub fn course(log: &Log, period_s: f64) -> Vec<Moment> {
+    let poses = poses(log);
+    let twists: Vec<[f64; 2]> = (0..poses.len()).map(|i| twist(log, &poses, i)).collect();
+    let mut moments: Vec<Moment> = Vec::new();
+    for (index, row) in log.rows.iter().enumerate() {
+        let (returns_m, seen_m) = sweep(log, &row.ranges_m, poses[index]);
         moments.push(Moment {
             t_s: row.t_s,
-            pose,
-            measured,
-            wanted: [0.0, 0.0],
+            pose: poses[index],
+            told: [0.0; 2],
+            speed: twists[index],
+            wanted: [0.0; 2],
+            row: Some(index),
             returns_m,
             seen_m,
         });
+        let Some(next) = log.rows.get(index + 1) else {
+            break;
+        };
+        let span_s = next.t_s - row.t_s;
+        let steps = (span_s / period_s.max(1e-3)).ceil().max(1.0);
+        for step in 1..steps as usize {
+            let part = step as f64 / steps;
+            moments.push(Moment {
+                t_s: row.t_s + span_s * part,
+                pose: along(poses[index], next.increment_m_rad, part),
+                told: [0.0; 2],
+                speed: std::array::from_fn(|i| {
+                    twists[index][i] + part * (twists[index + 1][i] - twists[index][i])
+                }),
+                wanted: [0.0; 2],
+                row: None,
+                returns_m: Vec::new(),
+                seen_m: Vec::new(),
+            });
+        }
     }
-    for (moment, next) in moments.iter_mut().zip(twists.into_iter().skip(1)) {
-        moment.wanted = next;
-    }
+    link(&mut moments);
     moments
 }
 
-/// Mean twist of an increment: the chord of an arc is shorter than the arc.
-fn twist([dx, dy, dtheta]: [f64; 3], span_s: f64) -> [f64; 2] {
+/// Enters what was told before and wanted after each tick.
+fn link(moments: &mut [Moment]) {
+    let speeds: Vec<[f64; 2]> = moments.iter().map(|moment| moment.speed).collect();
+    for (index, moment) in moments.iter_mut().enumerate() {
+        moment.told = index.checked_sub(1).map_or([0.0; 2], |before| speeds[before]);
+        moment.wanted = speeds.get(index + 1).copied().unwrap_or([0.0; 2]);
+    }
+}
+
+fn poses(log: &Log) -> Vec<Pose> {
+    let mut pose = [0.0; 3];
+    log.rows
+        .iter()
+        .map(|row| {
+            pose = along(pose, row.increment_m_rad, 1.0);
+            pose
+        })
+        .collect()
+}
+
+/// Pose after a part of an increment, driven as one arc.
+fn along(from: Pose, [dx, dy, dtheta]: [f64; 3], part: f64) -> Pose {
+    let [x, y] = transform(from, [dx, dy]);
+    // The chord of a part of an arc, seen from the chord of the whole.
+    let half = dtheta / 2.0;
+    let (stretch, bend) = if half.abs() > 1e-6 {
+        ((half * part).sin() / half.sin(), half * part - half)
+    } else {
+        (part, 0.0)
+    };
+    let chord = [x - from[0], y - from[1]];
+    let (sin, cos) = bend.sin_cos();
+    [
+        from[0] + stretch * (cos * chord[0] - sin * chord[1]),
+        from[1] + stretch * (sin * chord[0] + cos * chord[1]),
+        from[2] + dtheta * part,
+    ]
+}
+
+/// Mean motion around a row; zero where the robot did not move at that row at all.
+fn twist(log: &Log, poses: &[Pose], index: usize) -> [f64; 2] {
+    let rests = |row: usize| {
+        log.rows
+            .get(row)
+            .is_none_or(|row| row.increment_m_rad.iter().all(|part| part.abs() < 1e-4))
+    };
+    if rests(index) && rests(index + 1) {
+        return [0.0, 0.0];
+    }
+    let from = index.saturating_sub(SMOOTHING);
+    let to = (index + SMOOTHING).min(poses.len().saturating_sub(1));
+    let span_s = log.rows[to].t_s - log.rows[from].t_s;
+    if span_s <= 0.0 {
+        return [0.0, 0.0];
+    }
+    let path: f64 = log.rows[from + 1..=to].iter().map(|row| arc_m(row.increment_m_rad)).sum();
+    [path / span_s, (poses[to][2] - poses[from][2]) / span_s]
+}
+
+/// Signed length of the arc of an increment: the chord is shorter.
+fn arc_m([dx, dy, dtheta]: [f64; 3]) -> f64 {
     let half = dtheta / 2.0;
     let stretch = if half.abs() > 1e-6 { half / half.sin() } else { 1.0 };
     let sign = if dx < 0.0 { -1.0 } else { 1.0 };
-    [sign * dx.hypot(dy) * stretch / span_s, dtheta / span_s]
+    sign * dx.hypot(dy) * stretch
 }
 
 fn sweep(log: &Log, ranges_m: &[f32], pose: Pose) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
@@ -119,10 +199,13 @@ mod tests {
         }
     }
 
+    fn near(a: [f64; 2], b: [f64; 2]) -> bool {
+        (a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-9
+    }
+
     #[test]
     fn beams_run_from_right_to_left() {
-        let moments = course(&log());
-        let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-9;
+        let moments = course(&log(), 1.0);
         assert!(near(moments[0].returns_m[0], [0.5, -1.0]));
         assert!(near(moments[0].returns_m[1], [2.5, 0.0]));
         assert!(near(moments[0].returns_m[2], [0.5, 3.0]));
@@ -130,18 +213,25 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wanted_is_what_comes_next() {
-        let moments = course(&log());
-        assert!((moments[0].wanted[0] - 0.4).abs() < 1e-12);
-        assert_eq!(moments[1].measured, moments[0].wanted);
-        assert_eq!(moments[1].wanted, [0.0, 0.0]);
+    fn ticks_fill_the_time_between_rows() {
+        let moments = course(&log(), 0.1);
+        let rows: Vec<_> = moments.iter().map(|m| m.row).collect();
+        assert_eq!(rows, vec![Some(0), None, None, None, None, Some(1)]);
+        assert!((moments[2].t_s - 0.2).abs() < 1e-12);
+        assert!(near([moments[2].pose[0], moments[2].pose[1]], [0.08, 0.0]));
+        assert_eq!(moments[2].told, moments[1].speed);
+        assert_eq!(moments[2].wanted, moments[3].speed);
         assert!((length_m(&moments) - 0.2).abs() < 1e-12);
     }
 
     #[test]
-    fn the_arc_is_longer_than_its_chord() {
-        let [v, omega] = twist([1.0, 1.0, std::f64::consts::FRAC_PI_2], 1.0);
-        assert!((v - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
-        assert!((omega - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+    fn parts_of_an_increment_lie_on_its_arc() {
+        // A quarter circle of radius 1 to the left.
+        let quarter = [1.0, 1.0, std::f64::consts::FRAC_PI_2];
+        let [x, y, theta] = along([0.0; 3], quarter, 0.5);
+        let eighth = std::f64::consts::FRAC_PI_4;
+        assert!(near([x, y], [eighth.sin(), 1.0 - eighth.cos()]), "{x} {y}");
+        assert!((theta - eighth).abs() < 1e-12);
+        assert!((arc_m(quarter) - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
     }
 }

@@ -89,7 +89,7 @@ fn first_of(index: usize, moment: &Moment, verdict: &Judged) -> Event {
         refusal: verdict.refusal.clone(),
         point_m: verdict.point_m,
         distance_m: verdict.point_m.map(distance),
-        speed_mps: moment.measured[0],
+        speed_mps: moment.speed[0],
         factor: verdict.factor,
     }
 }
@@ -105,7 +105,9 @@ mod tests {
             .map(|i| Moment {
                 t_s: i as f64,
                 pose: [0.0; 3],
-                measured: [1.0, 0.0],
+                told: [1.0, 0.0],
+                row: Some(i),
+                speed: [1.0, 0.0],
                 wanted: [1.0, 0.0],
                 returns_m: vec![],
                 seen_m: vec![],

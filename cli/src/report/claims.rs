@@ -4,6 +4,7 @@ use super::words;
 use crate::certificate::AssumptionRecord;
 use crate::claims::{Claim, EvidenceKind, Status};
 use crate::explain;
+use crate::junit;
 use crate::picture::svg::escape;
 use haltline_spec::requirements::requirements;
 use std::fmt::Write as _;
@@ -86,11 +87,8 @@ fn card(page: &mut String, claim: &Claim) {
 fn counterexamples(page: &mut String, claim: &Claim) {
     const SHOWN: usize = 5;
     for found in claim.counterexamples.iter().take(SHOWN) {
-        let when = match (found.t_s, found.tick) {
-            (Some(t_s), Some(tick)) => format!(" at {t_s:.3} s (tick {tick})"),
-            (Some(t_s), None) => format!(" at {t_s:.3} s"),
-            _ => String::new(),
-        };
+        let when = junit::when(found);
+        let when = when.strip_prefix(&found.case).unwrap_or_default();
         let _ = write!(
             page,
             "<p class=\"bad small\"><a href=\"#{}\">{}</a>{when}: {}</p><pre>{}</pre>",

@@ -189,6 +189,7 @@ fn suite() -> SuiteResult {
 fn certificate(robot: &Robot, suite: &SuiteResult) -> Certificate {
     let replay = Replay {
         folder: "scenarios/files".into(),
+        robot: None,
         period_s: 0.04,
     };
     let mut claims = claims::from_suite(suite, &replay);

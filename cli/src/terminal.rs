@@ -1,0 +1,135 @@
+//! The certificate in a terminal.
+
+use crate::certificate::Certificate;
+use crate::claims::{Claim, Status};
+use crate::junit;
+use crate::report::words;
+use crate::timing::Timing;
+use console::{StyledObject, style};
+use haltline_robots::Robot;
+use haltline_robots::contract::{Contract, Finding};
+use haltline_scenarios::result::{Outcome, SuiteResult};
+use std::path::PathBuf;
+
+fn part(name: &str) -> StyledObject<String> {
+    style(format!("{name:<11}")).bold()
+}
+
+/// Robot and contract, before the runs begin.
+pub fn contract(robot: &Robot, contract: &Contract) {
+    say!("{}  {}\n", style(&robot.name).bold(), style(&robot.file).dim());
+    let count = |finding| contract.checks.iter().filter(|c| c.finding == finding).count();
+    say!(
+        "{}{} hold, {} fail, {} not covered",
+        part("contract"),
+        words::count(count(Finding::Holds), "check"),
+        count(Finding::Fails),
+        count(Finding::NotCovered)
+    );
+    for check in contract.checks.iter().filter(|c| c.finding != Finding::Holds) {
+        let mark = match check.finding {
+            Finding::Fails => style("fails").red().bold(),
+            _ => style("not covered").dim(),
+        };
+        say!("{:11}{mark} {}: {}", "", check.id, check.sentence);
+    }
+    say!(
+        "{:11}{}",
+        "",
+        style("obstacles up to    top speed   decides                 smallest gap   decides").dim()
+    );
+    for (speed, gap) in contract.speed_table.iter().zip(&contract.gap_table) {
+        let narrowest = gap.gap_m.map_or_else(|| "none".to_owned(), |gap| format!("{gap:.2} m"));
+        say!(
+            "{:11}{:>11.1} m/s {:>8.2} m/s   {:<22} {:>13}   {}",
+            "", speed.obstacle_speed_mps, speed.top_speed_mps, speed.decides, narrowest, gap.decides
+        );
+    }
+    say!("{}not claimed yet", part("proofs"));
+}
+
+/// What came out.
+pub fn summary(certificate: &Certificate, suite: &SuiteResult, timing: &Timing, written: &[PathBuf]) {
+    let as_expected = suite.cases.iter().filter(|c| c.judgement.outcome == Outcome::Pass).count();
+    let naked = suite.cases.iter().filter_map(|c| c.naked.as_ref());
+    let touched = naked.clone().filter(|n| !n.contacts.is_empty()).count();
+    say!(
+        "{}{}, {as_expected} as expected; {}, {touched} touched",
+        part("scenarios"),
+        words::count(suite.cases.len(), "run"),
+        words::count(naked.count(), "naked twin")
+    );
+    say!("{}not claimed yet", part("adversary"));
+    match &timing.tick {
+        Some(tick) => say!(
+            "{}tick {:.0} us (median), {:.0} us (99 %), {:.0} us (longest of {}) on this machine; not a claim",
+            part("timing"),
+            tick.median_us,
+            tick.p99_us,
+            tick.max_us,
+            tick.ticks
+        ),
+        None => say!("{}not measured: the kernel refuses this robot", part("timing")),
+    }
+    say!("");
+    for claim in &certificate.claims {
+        say!("  {:<12} {}  {}", claim.id, status(claim.status), claim.evidence.words);
+    }
+    for claim in &certificate.claims {
+        counterexamples(claim);
+    }
+    say!("");
+    for path in written {
+        say!("wrote {}", path.display());
+    }
+    say!("\n{}", verdict(certificate));
+}
+
+fn status(status: Status) -> StyledObject<String> {
+    let padded = format!("{:<15}", status.words());
+    match status {
+        Status::Holds => style(padded).green(),
+        Status::Failed => style(padded).red().bold(),
+        Status::NotCheckable => style(padded).yellow(),
+        Status::NotClaimed => style(padded).dim(),
+    }
+}
+
+fn counterexamples(claim: &Claim) {
+    const SHOWN: usize = 5;
+    if claim.status != Status::Failed {
+        return;
+    }
+    say!("\n{} does not hold:", style(&claim.id).red().bold());
+    for found in claim.counterexamples.iter().take(SHOWN) {
+        say!("  {}", junit::when(found));
+        say!("    {}", found.what);
+        say!("    replay: {}", found.replay);
+    }
+    let more = claim.counterexamples.len().saturating_sub(SHOWN);
+    if more > 0 {
+        say!("  and {more} more in certificate.json");
+    }
+}
+
+fn verdict(certificate: &Certificate) -> StyledObject<String> {
+    let verdict = &certificate.verdict;
+    match verdict.result {
+        "holds" => style("Every claim that is made holds.".to_owned()).green().bold(),
+        "failed" => style(format!("{} failed.", words::count(verdict.failed, "claim"))).red().bold(),
+        _ => style(format!(
+            "Not checkable: evidence is missing for {}.",
+            words::count(verdict.not_checkable, "claim")
+        ))
+        .yellow()
+        .bold(),
+    }
+}
+
+/// What to do when no scenario is for the robot.
+pub fn no_scenario(robot: &str, folder: &str) {
+    eprintln!(
+        "No scenario in {folder} is for this robot. Scenarios name their robot by the stem of its file: write some \
+         with `robot = \"{robot}\"` and give their folder with --scenarios."
+    );
+}
