@@ -251,7 +251,7 @@ fn due<T>(waiting: &mut Vec<(u64, T)>, t_us: u64) -> Vec<T> {
 fn every_second<T: Copy>(past: &mut Vec<T>, value: T, active: bool) -> T {
     past.push(value);
     let count = past.len();
-    if active && count % 2 == 0 && count > 3 {
+    if active && count.is_multiple_of(2) && count > 3 {
         past.get(count - 4).copied().unwrap_or(value)
     } else {
         value

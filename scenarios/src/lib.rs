@@ -26,3 +26,6 @@ pub mod sweep;
 pub mod trace;
 pub mod verdict;
 pub mod world;
+
+#[cfg(test)]
+mod testing;

@@ -46,10 +46,10 @@ pub fn cast(world: &World, t_s: f64, ray: &Ray, range_max: f64) -> Option<Return
         if misses_bounds(ray, &pose, body.shape.reach(), limit) {
             continue;
         }
-        if let Some(range) = range_to(ray, &body.shape, &pose) {
-            if range <= limit {
-                best = Some(Return { range, body: index });
-            }
+        if let Some(range) = range_to(ray, &body.shape, &pose)
+            && range <= limit
+        {
+            best = Some(Return { range, body: index });
         }
     }
     best

@@ -315,3 +315,6 @@ pub fn judge_group(group: &str, cases: &[&CaseResult], required: Option<usize>) 
         judgement: sentences.judgement(),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -189,10 +189,10 @@ impl World {
     /// Fires the triggers that wait for the robot, given its rotation centre's x.
     pub fn observe_robot(&mut self, t_s: f64, robot_x_m: f64) {
         for (body, started) in self.bodies.iter().zip(&mut self.started_s) {
-            if let (None, Trigger::RobotPasses { x_m, delay_s }) = (*started, body.trigger) {
-                if robot_x_m >= x_m {
-                    *started = Some(t_s + delay_s);
-                }
+            if let (None, Trigger::RobotPasses { x_m, delay_s }) = (*started, body.trigger)
+                && robot_x_m >= x_m
+            {
+                *started = Some(t_s + delay_s);
             }
         }
     }

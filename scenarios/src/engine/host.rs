@@ -185,10 +185,11 @@ impl<'a> Host<'a> {
             (engine.pose(), rested),
         ));
         let before = self.decision.map(|d| d.status);
-        if before != Some(StopStatus::Running) && record.status == StopStatus::Running {
-            if inputs.reset_us.is_some() {
-                engine.vouch(t_us, self.monitors.seen());
-            }
+        if before != Some(StopStatus::Running)
+            && record.status == StopStatus::Running
+            && inputs.reset_us.is_some()
+        {
+            engine.vouch(t_us, self.monitors.seen());
         }
         self.decision = Some(record);
         record.set_point

@@ -178,7 +178,9 @@ impl<'a> Engine<'a> {
     fn vouch(&mut self, t_us: u64, seen: &[Option<f64>]) {
         let (pose, radius_m) = (self.pose(), self.robot.values.memory.clear_at_start_m);
         let t_s = seconds(t_us);
-        let distances = self.judge.distances_from(&self.world, [pose.x, pose.y], t_s);
+        let distances = self
+            .judge
+            .distances_from(&self.world, [pose.x, pose.y], t_s);
         for (index, (body, distance)) in self.world.bodies().iter().zip(distances).enumerate() {
             let unseen = seen.get(index).is_some_and(Option::is_none);
             if distance < radius_m && unseen && !body.invisible {

@@ -154,11 +154,12 @@ impl Recorder {
                     pose: pose_record(&engine.pose()),
                 });
             }
-            if let Some(contact) = self.result.contacts.get_mut(index) {
-                if moving && !contact.robot_moving {
-                    contact.robot_moving = true;
-                    touches.push(Touch { t_s, body });
-                }
+            if let Some(contact) = self.result.contacts.get_mut(index)
+                && moving
+                && !contact.robot_moving
+            {
+                contact.robot_moving = true;
+                touches.push(Touch { t_s, body });
             }
         }
         touches

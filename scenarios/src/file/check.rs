@@ -36,12 +36,14 @@ pub(super) fn check(scenario: &Scenario) -> Result<(), Complaint> {
 
 fn check_expect(scenario: &Scenario) -> Result<(), Complaint> {
     let expect = &scenario.expect;
-    if let Some(stopped) = &expect.stopped_before {
-        if stopped.clearance_m.is_none() && stopped.x_m.is_none() && stopped.y_m.is_none() {
-            let message =
-                "stopped_before says nothing; write clearance_m, x_m or y_m into it".to_owned();
-            return Err((None, message));
-        }
+    if let Some(stopped) = &expect.stopped_before
+        && stopped.clearance_m.is_none()
+        && stopped.x_m.is_none()
+        && stopped.y_m.is_none()
+    {
+        let message =
+            "stopped_before says nothing; write clearance_m, x_m or y_m into it".to_owned();
+        return Err((None, message));
     }
     let says_something = expect.reached.is_some()
         || expect.stopped_before.is_some()

@@ -3,8 +3,10 @@
 //! Every table refuses keys it does not know; numbers carry their unit in the key and are checked
 //! while they are read, so each error names file, line, column and what to write.
 
+mod bodies;
 mod check;
 mod error;
+mod expect;
 pub mod fault;
 mod load;
 pub mod value;
@@ -12,7 +14,9 @@ pub mod value;
 #[cfg(test)]
 mod tests;
 
+pub use bodies::{BoxBody, Circle, Material, Motion, Wall};
 pub use error::ScenarioError;
+pub use expect::{ContactExpectation, Expect, Naked, StoppedBefore, SweepAxis, SweepValue};
 pub use load::{load_dir, load_file, parse};
 
 use serde::Deserialize;
@@ -95,93 +99,6 @@ pub struct Start {
     pub heading_deg: Number,
     pub linear_mps: Number,
     pub angular_radps: Number,
-}
-
-/// How a body looks to a laser.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Material {
-    /// Returns every beam.
-    #[default]
-    Solid,
-    /// Glass or black cloth: returns none.
-    Invisible,
-}
-
-/// A line without thickness.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Wall {
-    /// Name for reports.
-    pub name: Option<String>,
-    /// One end.
-    pub from_m: Pair,
-    /// The other end.
-    pub to_m: Pair,
-    /// How it looks to a laser.
-    #[serde(default)]
-    pub material: Material,
-    /// How it moves.
-    pub motion: Option<Spanned<Motion>>,
-}
-
-/// A rectangle.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BoxBody {
-    /// Name for reports.
-    pub name: Option<String>,
-    /// Centre.
-    pub center_m: Pair,
-    /// Full extents along its own x and y.
-    pub size_m: [Positive; 2],
-    /// Heading of its own x.
-    #[serde(default)]
-    pub heading_deg: Number,
-    /// How it looks to a laser.
-    #[serde(default)]
-    pub material: Material,
-    /// How it moves.
-    pub motion: Option<Spanned<Motion>>,
-}
-
-/// A disc.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Circle {
-    /// Name for reports.
-    pub name: Option<String>,
-    /// Centre.
-    pub center_m: Pair,
-    /// Radius.
-    pub radius_m: Positive,
-    /// How it looks to a laser.
-    #[serde(default)]
-    pub material: Material,
-    /// How it moves.
-    pub motion: Option<Spanned<Motion>>,
-}
-
-/// Motion of a body: one of `velocity_mps`, `turn_radps` with `pivot_m`, or `way_points`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Motion {
-    /// Start time; default 0.
-    pub from_s: Option<NonNegative>,
-    /// Instead: start when the robot's rotation centre first has this x ...
-    pub when_robot_passes_x_m: Option<Number>,
-    /// ... and this much later.
-    pub delay_s: Option<NonNegative>,
-    /// How long; default for ever.
-    pub for_s: Option<Positive>,
-    /// Constant velocity.
-    pub velocity_mps: Option<Pair>,
-    /// Constant turn rate about `pivot_m`.
-    pub turn_radps: Option<Number>,
-    /// Pivot in the world.
-    pub pivot_m: Option<Pair>,
-    /// `[t_s, x_m, y_m]` of the body's centre; times count from the start of the motion.
-    pub way_points: Option<Vec<[Number; 3]>>,
 }
 
 /// A disc the rotation centre must enter.
@@ -316,68 +233,6 @@ pub struct Operator {
     pub emergency_stops_s: Vec<[NonNegative; 2]>,
 }
 
-/// Whether the guarded robot may touch while it moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ContactExpectation {
-    /// It must not.
-    #[default]
-    Never,
-    /// It may, because an assumption is broken that nothing can detect in time.
-    May,
-    /// It must: the scenario shows what the broken assumption costs.
-    Must,
-}
-
-/// What must come of the guarded run.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Expect {
-    /// Whether the goal is reached.
-    pub reached: Option<bool>,
-    /// Contact while moving.
-    #[serde(default)]
-    pub contact: ContactExpectation,
-    /// At rest at the end, and before something.
-    pub stopped_before: Option<StoppedBefore>,
-    /// Whether it ends at rest because the guard or the stop logic holds it.
-    pub blocked: Option<bool>,
-    /// Reasons that must occur, as the kernel names them.
-    #[serde(default)]
-    pub reasons: Vec<String>,
-    /// A stop decision must follow the first fault within this time.
-    pub stop_within_s: Option<Positive>,
-    /// Least path length: the robot did try.
-    pub travelled_min_m: Option<NonNegative>,
-    /// Least angle turned in all.
-    pub turned_min_rad: Option<NonNegative>,
-    /// Assumptions that the result must name as broken; any other broken one fails the scenario.
-    #[serde(default)]
-    pub assumptions_broken: Vec<String>,
-}
-
-/// Where the robot must have stopped; give at least one.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StoppedBefore {
-    /// At least this far from every body at the end.
-    pub clearance_m: Option<NonNegative>,
-    /// Rotation centre never beyond this x.
-    pub x_m: Option<Number>,
-    /// Rotation centre never beyond this y.
-    pub y_m: Option<Number>,
-}
-
-/// The run without the guard.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Naked {
-    /// Whether it must touch.
-    pub must_touch: bool,
-    /// Why not, if not.
-    pub reason: Option<String>,
-}
-
 impl Scenario {
     /// Why there is no naked twin; `None` if there is one and it must touch.
     #[must_use]
@@ -385,33 +240,4 @@ impl Scenario {
         let naked = self.naked.as_ref()?.get_ref();
         (!naked.must_touch).then(|| naked.reason.as_deref().unwrap_or_default())
     }
-}
-
-/// One axis of a sweep: either `values`, or `path` with `from`, `to` and `count`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SweepAxis {
-    /// Word for the variant's name.
-    pub name: String,
-    /// Dotted path into the file, such as `circle.0.motion.delay_s`.
-    pub path: Option<String>,
-    /// First value.
-    pub from: Option<Number>,
-    /// Last value.
-    pub to: Option<Number>,
-    /// How many values, ends included.
-    pub count: Option<usize>,
-    /// Named sets of paths and values.
-    #[serde(default)]
-    pub values: Vec<SweepValue>,
-}
-
-/// One point of a named axis.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SweepValue {
-    /// Word for the variant's name.
-    pub label: String,
-    /// Dotted paths and their values.
-    pub set: toml::Table,
 }

@@ -35,10 +35,10 @@ impl Limit {
         for what in outside(robot, set_point) {
             self.ledger.violated(tick.t_s, what);
         }
-        if tick.decision.action < Action::Brake {
-            if let Some(what) = self.jumped(robot, tick.now_us, set_point) {
-                self.ledger.violated(tick.t_s, what);
-            }
+        if tick.decision.action < Action::Brake
+            && let Some(what) = self.jumped(robot, tick.now_us, set_point)
+        {
+            self.ledger.violated(tick.t_s, what);
         }
         self.before = Some((tick.now_us, set_point));
     }

@@ -34,11 +34,12 @@ impl Newest {
         let mut fresh = Vec::new();
         for (index, scan) in inputs.scans.iter().enumerate() {
             let usable = scan_usable(robot, scan) && scan.stamp_us <= now_us;
-            if let Some(newest) = self.scans.get_mut(scan.scanner) {
-                if usable && newest.is_none_or(|stamp| scan.stamp_us > stamp) {
-                    *newest = Some(scan.stamp_us);
-                    fresh.push(index);
-                }
+            if let Some(newest) = self.scans.get_mut(scan.scanner)
+                && usable
+                && newest.is_none_or(|stamp| scan.stamp_us > stamp)
+            {
+                *newest = Some(scan.stamp_us);
+                fresh.push(index);
             }
         }
         if let Some(sample) = inputs.odometry.filter(odometry_finite) {

@@ -1,0 +1,96 @@
+//! What a scenario file demands of its runs, and the axes of its sweep.
+
+use serde::Deserialize;
+
+use super::value::{NonNegative, Number, Positive};
+
+/// Whether the guarded robot may touch while it moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactExpectation {
+    /// It must not.
+    #[default]
+    Never,
+    /// It may, because an assumption is broken that nothing can detect in time.
+    May,
+    /// It must: the scenario shows what the broken assumption costs.
+    Must,
+}
+
+/// What must come of the guarded run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Expect {
+    /// Whether the goal is reached.
+    pub reached: Option<bool>,
+    /// Contact while moving.
+    #[serde(default)]
+    pub contact: ContactExpectation,
+    /// At rest at the end, and before something.
+    pub stopped_before: Option<StoppedBefore>,
+    /// Whether it ends at rest because the guard or the stop logic holds it.
+    pub blocked: Option<bool>,
+    /// Reasons that must occur, as the kernel names them.
+    #[serde(default)]
+    pub reasons: Vec<String>,
+    /// A stop decision must follow the first fault within this time.
+    pub stop_within_s: Option<Positive>,
+    /// Least path length: the robot did try.
+    pub travelled_min_m: Option<NonNegative>,
+    /// Least angle turned in all.
+    pub turned_min_rad: Option<NonNegative>,
+    /// Assumptions that the result must name as broken; any other broken one fails the scenario.
+    #[serde(default)]
+    pub assumptions_broken: Vec<String>,
+}
+
+/// Where the robot must have stopped; give at least one.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoppedBefore {
+    /// At least this far from every body at the end.
+    pub clearance_m: Option<NonNegative>,
+    /// Rotation centre never beyond this x.
+    pub x_m: Option<Number>,
+    /// Rotation centre never beyond this y.
+    pub y_m: Option<Number>,
+}
+
+/// The run without the guard.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Naked {
+    /// Whether it must touch.
+    pub must_touch: bool,
+    /// Why not, if not.
+    pub reason: Option<String>,
+}
+
+/// One axis of a sweep: either `values`, or `path` with `from`, `to` and `count`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SweepAxis {
+    /// Word for the variant's name.
+    pub name: String,
+    /// Dotted path into the file, such as `circle.0.motion.delay_s`.
+    pub path: Option<String>,
+    /// First value.
+    pub from: Option<Number>,
+    /// Last value.
+    pub to: Option<Number>,
+    /// How many values, ends included.
+    pub count: Option<usize>,
+    /// Named sets of paths and values.
+    #[serde(default)]
+    pub values: Vec<SweepValue>,
+}
+
+/// One point of a named axis.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SweepValue {
+    /// Word for the variant's name.
+    pub label: String,
+    /// Dotted paths and their values.
+    pub set: toml::Table,
+}
