@@ -4,7 +4,7 @@
 
 use parry2d_f64::math::{Pose as Isometry, Vector};
 use parry2d_f64::query;
-use parry2d_f64::shape::{Ball, Cuboid, Shape};
+use parry2d_f64::shape::{Ball, Cuboid, Segment, Shape};
 
 /// Position in metres and heading in radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -122,6 +122,20 @@ impl Outline {
             .max(-self.right_m - point[1])
             .max(0.0);
         dx.hypot(dy)
+    }
+
+    /// Distance between the outline standing at `pose` and a segment, metres; 0 if they meet.
+    ///
+    /// `None` if the geometry library refuses the pair, which it never does.
+    #[must_use]
+    pub fn distance_to_segment_m(&self, pose: Pose, a: [f64; 2], b: [f64; 2]) -> Option<f64> {
+        let (cuboid, centre) = self.cuboid();
+        let [x_m, y_m] = pose.place(centre);
+        let standing = Pose::new(x_m, y_m, pose.theta_rad).isometry();
+        let segment = Segment::new(Vector::new(a[0], a[1]), Vector::new(b[0], b[1]));
+        query::distance(&standing, &cuboid, &Pose::default().isometry(), &segment)
+            .ok()
+            .map(|found| found.distance)
     }
 
     fn cuboid(&self) -> (Cuboid, [f64; 2]) {

@@ -45,6 +45,8 @@ pub struct Ray {
     pub range_m: Option<f64>,
     /// Index of the body that was hit.
     pub body: Option<usize>,
+    /// Where the surface really is that returned the beam.
+    pub place: Option<[f64; 2]>,
     /// Time at which the beam was fired, s.
     pub t_s: f64,
 }
@@ -75,6 +77,12 @@ impl Scanner {
                 Ray {
                     range_m: seen.map(|(_, range_m)| (range_m + own * self.error_m).max(0.0)),
                     body: seen.map(|(body, _)| body),
+                    place: seen.map(|(_, range_m)| {
+                        [
+                            origin[0] + range_m * angle_rad.cos(),
+                            origin[1] + range_m * angle_rad.sin(),
+                        ]
+                    }),
                     t_s,
                 }
             })

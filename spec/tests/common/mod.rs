@@ -1,0 +1,36 @@
+//! Closed loops of the kernel and the oracle: episodes, their run, and the check of the claim.
+
+#![allow(dead_code)] // Every test file uses its own part.
+
+pub mod claim;
+pub mod episode;
+pub mod pilot;
+pub mod report;
+pub mod rules;
+pub mod run;
+pub mod wire;
+
+pub use episode::{Episode, Lie, Style, episodes};
+pub use report::Report;
+pub use run::run;
+
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+/// Runs the property on `cases` episodes that are the same on every machine.
+pub fn check(
+    cases: u32,
+    strategy: &impl proptest::strategy::Strategy<Value = Episode>,
+    property: impl Fn(Episode) -> Result<(), proptest::test_runner::TestCaseError>,
+) {
+    let config = Config {
+        cases,
+        failure_persistence: None,
+        max_shrink_iters: 200,
+        ..Config::default()
+    };
+    let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+    let mut runner = TestRunner::new_with_rng(config, rng);
+    if let Err(found) = runner.run(strategy, property) {
+        panic!("{found}");
+    }
+}
