@@ -12,8 +12,8 @@
 mod common;
 mod scene;
 
-use scene::Setup;
 use core::hint::black_box;
+use scene::Setup;
 
 /// What callgrind collects.
 #[inline(never)]

@@ -322,7 +322,7 @@ impl<const B: usize> Sweep<B> {
         let width = i64::from(width);
         let low = ray.beam.saturating_sub(width.saturating_add(1));
         let high = ray.beam.saturating_add(width).saturating_add(2);
-        let (mut confirmed, mut past, mut inside) = (false, true, 0_u32);
+        let (mut past, mut inside) = (true, 0_u32);
         let last = i64::try_from(self.count).unwrap_or(0).saturating_sub(1);
         if low > last || high < 0 {
             return Sight::OutOfView;
@@ -332,10 +332,6 @@ impl<const B: usize> Sweep<B> {
             let Some(&value) = usize::try_from(beam).ok().and_then(|b| self.beams.get(b)) else {
                 return Sight::Unclear;
             };
-            if let Beam::Hit(range) = value {
-                let difference = i32::from(range).saturating_sub(ray.range_mm);
-                confirmed |= difference.abs() <= same_mm;
-            }
             if within_disc(beam) {
                 inside = inside.saturating_add(1);
                 past &= self.goes_beyond(value, ray.range_mm.saturating_add(error_mm));
@@ -343,7 +339,7 @@ impl<const B: usize> Sweep<B> {
         }
         let whole = (low >= 0 || !within_disc(-1))
             && (high <= last || !within_disc(last.saturating_add(1)));
-        if confirmed || self.bridged(ray.beam, ray.range_mm, same_mm) {
+        if self.shows(ray.beam, ray.range_mm, same_mm) {
             Sight::Confirmed
         } else if past && inside > 0 && whole {
             Sight::LookedPast
@@ -362,18 +358,31 @@ impl<const B: usize> Sweep<B> {
         }
     }
 
-    /// Whether the two beams around `beam` hit one surface on both sides of `range`.
-    fn bridged(&self, beam: i64, range_mm: i32, error_mm: i32) -> bool {
+    /// Whether one of the two beams around a place returned from `range_mm`, or both from one
+    /// surface before and behind it.
+    ///
+    /// Only these two: a return farther to the side says nothing about this place, and its own
+    /// inflation, which covers one beam gap, would not cover it.
+    fn shows(&self, beam: i64, range_mm: i32, same_mm: i32) -> bool {
         let hit = |beam: i64| match usize::try_from(beam).ok().and_then(|b| self.beams.get(b)) {
             Some(Beam::Hit(range)) => Some(i32::from(*range)),
             _ => None,
         };
-        let (Some(a), Some(b)) = (hit(beam), hit(beam.saturating_add(1))) else {
+        let last = i64::try_from(self.count).unwrap_or(0).saturating_sub(1);
+        if beam < 0 || beam >= last {
             return false;
-        };
-        (a.saturating_sub(b)).abs() <= self.join_mm
-            && range_mm >= a.min(b).saturating_sub(error_mm)
-            && range_mm <= a.max(b).saturating_add(error_mm)
+        }
+        let near = |range: i32| range.abs_diff(range_mm) <= same_mm.unsigned_abs();
+        match (hit(beam), hit(beam.saturating_add(1))) {
+            (Some(a), Some(b)) => {
+                let bridged = a.abs_diff(b) <= self.join_mm.unsigned_abs()
+                    && range_mm >= a.min(b)
+                    && range_mm <= a.max(b);
+                near(a) || near(b) || bridged
+            }
+            (Some(range), None) | (None, Some(range)) => near(range),
+            (None, None) => false,
+        }
     }
 
     /// Angle between beam `beam` and `bearing`, counts.

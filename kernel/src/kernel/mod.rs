@@ -132,6 +132,9 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     /// design §2; spec/ GUARD, BRAKE, LIMIT, ZONE, FRESH, SILENT, LATCH, INPUT, MEMORY.
     pub fn step(&mut self, inputs: &Inputs<'_>, now: Instant) -> Decision {
         let mut hazard = Worst(Reason::None);
+        // The caller's clock, even if it ran backwards: nobody may hold a set point for longer.
+        let timing = &self.config.config().timing;
+        let expires = now.plus(timing.period).plus(timing.jitter);
         let (now, elapsed) = self.tick(now, &mut hazard);
         self.take_odometry(&inputs.odometry, now, &mut hazard);
         for scan in inputs.scans {
@@ -149,7 +152,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             at_rest: self.is_at_rest(),
         };
         self.advance_stop(&events);
-        self.decide(hazard.0, now, elapsed)
+        self.decide(hazard.0, now, elapsed, expires)
     }
 
     /// Checks the clock; returns the time to work with and the step since the last tick.
@@ -191,7 +194,13 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     }
 
     /// Turns the state of the tick into a decision and records what is sent.
-    fn decide(&mut self, hazard: Reason, now: Instant, elapsed: Duration) -> Decision {
+    fn decide(
+        &mut self,
+        hazard: Reason,
+        now: Instant,
+        elapsed: Duration,
+        expires: Instant,
+    ) -> Decision {
         let outcome = match self.stop.mode {
             Mode::Latched => self.braking(
                 Action::EmergencyStop,
@@ -210,7 +219,6 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             Mode::Running => self.drive(now, elapsed),
         };
         self.pipeline.push(now, outcome.vertex);
-        let timing = &self.config.config().timing;
         Decision {
             action: outcome.action,
             setpoint: window::setpoint(self.config.config(), outcome.vertex),
@@ -220,7 +228,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
                 Mode::Protective => StopStatus::Protective,
                 Mode::Latched => StopStatus::Latched,
             },
-            expires: now.plus(timing.period).plus(timing.jitter),
+            expires,
             verdict: outcome.verdict,
             factor_permille: outcome.factor_permille,
         }

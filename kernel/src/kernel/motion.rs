@@ -9,7 +9,7 @@ use crate::guard::tube::{Sample, eighths_up};
 use crate::guard::{Scene, Verdict, certify, leave};
 use crate::input::{Command, Odometry, Twist};
 use crate::time::{Duration, Instant};
-use crate::units::Curvature;
+use crate::units::{Curvature, Speed};
 use crate::watch::is_stale;
 use crate::window::{self, FACTORS_PERMILLE};
 
@@ -211,8 +211,13 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         )
     }
 
-    /// What the robot is excused while it leaves rest (GUARD-13).
+    /// What the robot is excused while it leaves rest (GUARD-16).
+    ///
+    /// Only in a static world: where bodies move, one that stands within reach may step nearer.
     fn excuse(&self) -> Option<Excuse> {
+        if self.config.config().obstacle_speed != Speed::ZERO {
+            return None;
+        }
         if self.is_at_rest() {
             return Some(Excuse { rested: None });
         }
