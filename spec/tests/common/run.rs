@@ -54,6 +54,8 @@ struct Loop<'e> {
     log: Vec<(f64, SetPoint)>,
     sightings: Vec<Option<Sighting>>,
     excused: Vec<bool>,
+    /// Where the robot last rested, with the inflation there, until it has left.
+    rested: Option<(Pose, f64)>,
     /// What the last accepted step vouches for.
     vouched: Vec<Sighting>,
     pilot: Pilot,
@@ -100,6 +102,7 @@ impl<'e> Loop<'e> {
             log: vec![(-9.0, still(episode))],
             sightings: vec![None; world.len()],
             excused: vec![false; world.len()],
+            rested: None,
             vouched: Vec::new(),
             pilot: Pilot::new(draw.index(world.len())),
             world,
@@ -333,21 +336,32 @@ impl<'e> Loop<'e> {
         self.report.excused_contacts += usize::from(excused.is_some());
     }
 
-    /// The claim excuses what lies inside the inflation of a robot at rest, until it has left (GUARD-19).
+    /// The claim excuses what lies inside the inflation of the place where the robot rested, until
+    /// the robot has left all of it (GUARD-19).
     fn excuse(&mut self, allowance_m: f64, stamp_us: u64, truth: &Truth) {
         let outline = self.episode.outline();
         let rest = truth.measured.v_mps.abs() <= self.episode.tol_v_mps + 0.005
             && truth.measured.omega_radps.abs() <= self.episode.tol_omega_radps + 0.005;
-        let leaving = rest || self.excused.contains(&true);
+        if rest {
+            self.rested = Some((truth.pose, allowance_m));
+        }
         self.excused.fill(false);
+        let Some((rested, rested_m)) = self.rested else {
+            return;
+        };
         for sighting in self.sightings.iter().flatten() {
             let age_s = stamp_us as f64 * 1e-6 - sighting.t_s;
-            let near_m = sighting
-                .body
-                .distance_m(&outline, truth.pose)
-                .unwrap_or(0.0);
-            let near = near_m <= allowance_m + self.episode.obstacle_mps * age_s.max(0.0);
-            self.excused[sighting.index] = near && leaving;
+            let roam_m = self.episode.obstacle_mps * age_s.max(0.0);
+            let near = |pose: Pose, within_m: f64| {
+                sighting
+                    .body
+                    .distance_m(&outline, pose)
+                    .is_none_or(|distance_m| distance_m <= within_m + roam_m)
+            };
+            self.excused[sighting.index] = near(rested, rested_m) && near(truth.pose, allowance_m);
+        }
+        if !rest && !self.excused.contains(&true) {
+            self.rested = None;
         }
         self.report.excused += self.excused.iter().filter(|&&e| e).count();
     }
