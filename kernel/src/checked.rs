@@ -355,6 +355,7 @@ fn memory_model<const S: usize>(config: &Config<S>) -> MemoryModel {
             .map(|scanner| magnitude(scanner.error.as_um()))
             .max()
             .unwrap_or(0),
+        body_width_um: magnitude(config.memory.body_width_min.as_um()),
         join_mm: length.min(width).div_euclid(1000).min(JOIN_MAX_MM),
     }
 }

@@ -56,8 +56,10 @@ pub struct MemoryModel {
     pub obstacle_speed: u64,
     /// Largest point error of any scanner, µm.
     pub sensor_um: u64,
-    /// Point placement rules.
+    /// Neighbouring returns up to this far apart bound one surface, mm.
     pub join_mm: i32,
+    /// Bodies at least this wide are seen, µm.
+    pub body_width_um: u64,
 }
 
 /// Error of a point seen earlier, split by cause.
@@ -144,10 +146,9 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
     /// # Bound
     /// O((beams + remembered) × beams through one error disc + beams × remembered).
     pub fn accept(&mut self, model: &MemoryModel, arrival: Arrival<'_>, odometer: Odometer) {
-        let reach = mount_reach_mm(arrival.setup);
         let rules = SweepRules {
             join_mm: model.join_mm,
-            clear_max_mm: COVER_MM.saturating_sub(reach),
+            clear_max_mm: clear_max_mm(model, arrival.setup),
         };
         self.scratch.place(
             arrival.setup,
@@ -537,6 +538,19 @@ fn place_error_mm(model: &MemoryModel, stale: &Staleness, place: PointMm, robot:
 fn is_near(place: PointMm, robot: PointMm, radius_mm: i32) -> bool {
     place.x.abs_diff(robot.x) <= radius_mm.unsigned_abs()
         && place.y.abs_diff(robot.y) <= radius_mm.unsigned_abs()
+}
+
+/// Range up to which a ray clears space: inside the window wherever the robot stands in it, and
+/// not so far that a body of the least width fits between two beams (A-WIDTH).
+fn clear_max_mm(model: &MemoryModel, scanner: &Scanner) -> i32 {
+    let window = COVER_MM.saturating_sub(mount_reach_mm(scanner));
+    let increment_urad = crate::odometry::turn_urad(scanner.increment);
+    let seen_mm = model
+        .body_width_um
+        .saturating_mul(1000)
+        .checked_div(increment_urad)
+        .unwrap_or(0);
+    window.min(i32::try_from(seen_mm).unwrap_or(i32::MAX))
 }
 
 /// Distance of the scanner from the rotation centre, mm, rounded up (sum of components).
