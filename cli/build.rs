@@ -85,7 +85,10 @@ fn write_scenarios(root: &Path, out: &mut String) -> Result<(), Box<dyn std::err
     out.push_str("pub const EMBEDDED_SCENARIOS: &[(&str, &str)] = &[\n");
     for file in files.iter().filter(|file| file.ends_with(".toml")) {
         let text = std::fs::read_to_string(root.join(file))?;
-        let stem = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
+        let stem = Path::new(file)
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy();
         writeln!(out, "    ({stem:?}, {text:?}),")?;
     }
     out.push_str("];\n");

@@ -91,7 +91,9 @@ fn cases_for(library: &Library, robot: &Robot, name: &str) -> Result<Vec<Case>, 
 /// Hashes of the files that at least one run came from.
 fn used_files(library: &Library, cases: &[Case]) -> Vec<FileHash> {
     let is_used = |file: &&FileHash| {
-        cases.iter().any(|case| file.file == format!("{}.toml", case.scenario.group))
+        cases
+            .iter()
+            .any(|case| file.file == format!("{}.toml", case.scenario.group))
     };
     library.files.iter().filter(is_used).cloned().collect()
 }
@@ -120,7 +122,12 @@ fn replay_of(robot: &Robot, name: &str, library: &Library) -> Replay {
     }
 }
 
-fn all_claims(robot: &Robot, contract: &Contract, suite: &SuiteResult, replay: &Replay) -> Vec<Claim> {
+fn all_claims(
+    robot: &Robot,
+    contract: &Contract,
+    suite: &SuiteResult,
+    replay: &Replay,
+) -> Vec<Claim> {
     let mut claims = vec![contract_claim(robot, contract)];
     claims.extend(claims::from_suite(suite, replay));
     claims.extend(claims::not_claimed());
@@ -129,7 +136,10 @@ fn all_claims(robot: &Robot, contract: &Contract, suite: &SuiteResult, replay: &
 }
 
 fn contract_claim(robot: &Robot, contract: &Contract) -> Claim {
-    let failing = contract.checks.iter().filter(|check| check.finding == Finding::Fails);
+    let failing = contract
+        .checks
+        .iter()
+        .filter(|check| check.finding == Finding::Fails);
     let counterexamples: Vec<Counterexample> = failing
         .map(|check| Counterexample {
             case: check.id.to_owned(),
@@ -142,7 +152,8 @@ fn contract_claim(robot: &Robot, contract: &Contract) -> Claim {
     let holding = contract.checks.iter().filter(|check| check.holds()).count();
     Claim {
         id: "CONTRACT".to_owned(),
-        statement: "The limits of the robot file are consistent: it can stop within what it sees.".to_owned(),
+        statement: "The limits of the robot file are consistent: it can stop within what it sees."
+            .to_owned(),
         status: match (counterexamples.is_empty(), holding) {
             (false, _) => Status::Failed,
             (true, 0) => Status::NotCheckable,
@@ -185,13 +196,19 @@ fn write_all(
         result.map_err(|error| Failure::not_checkable(format!("{what}: {error}")))
     };
     let files = [
-        ("report.html", page::write(certificate, robot, suite).into_bytes()),
+        (
+            "report.html",
+            page::write(certificate, robot, suite).into_bytes(),
+        ),
         (
             "certificate.json",
             json("certificate.json", serde_json::to_vec_pretty(certificate))?,
         ),
         ("junit.xml", junit::write(certificate)?.into_bytes()),
-        ("timing.json", json("timing.json", serde_json::to_vec_pretty(timing))?),
+        (
+            "timing.json",
+            json("timing.json", serde_json::to_vec_pretty(timing))?,
+        ),
     ];
     let mut written = Vec::new();
     for (name, bytes) in files {

@@ -119,6 +119,19 @@ pub struct Claim {
     pub cases: Vec<String>,
 }
 
+/// The first counterexample of each case, and how many more that case has.
+#[must_use]
+pub fn first_of_each_case(found: &[Counterexample]) -> Vec<(&Counterexample, usize)> {
+    let mut first: Vec<(&Counterexample, usize)> = Vec::new();
+    for one in found {
+        match first.iter_mut().find(|(known, _)| known.case == one.case) {
+            Some((_, more)) => *more += 1,
+            None => first.push((one, 0)),
+        }
+    }
+    first
+}
+
 /// How to show a case again.
 #[derive(Clone, Debug)]
 pub struct Replay {
@@ -184,8 +197,15 @@ fn monitored(id: &str, suite: &SuiteResult, replay: &Replay) -> Claim {
         .flat_map(|case| case.guarded.monitors.iter().map(move |m| (case, m)))
         .filter(|(_, report)| report.id == id)
         .collect();
-    let checked = reports.iter().map(|(_, r)| r.checked).sum();
-    let engaged: u64 = reports.iter().map(|(_, r)| r.engaged).sum();
+    // A run that breaks an assumption on purpose is no evidence for what rests on it; what it
+    // violates counts all the same.
+    let kept = || {
+        reports
+            .iter()
+            .filter(|(case, _)| case.guarded.assumptions_broken.is_empty())
+    };
+    let checked = kept().map(|(_, r)| r.checked).sum();
+    let engaged: u64 = kept().map(|(_, r)| r.engaged).sum();
     let violations: u64 = reports.iter().map(|(_, r)| r.violation_count).sum();
     let counterexamples = reports
         .iter()
@@ -198,8 +218,7 @@ fn monitored(id: &str, suite: &SuiteResult, replay: &Replay) -> Claim {
             replay: replay.command(case),
         })
         .collect();
-    let cases: Vec<String> = reports
-        .iter()
+    let cases: Vec<String> = kept()
         .filter(|(_, report)| report.engaged > 0)
         .map(|(case, _)| case.name.clone())
         .collect();
@@ -262,8 +281,9 @@ fn scenarios(suite: &SuiteResult, replay: &Replay) -> Claim {
     };
     Claim {
         id: "SCENARIOS".to_owned(),
-        statement: "Every scenario came out as its file expects (goal reached, stopped before, blocked)."
-            .to_owned(),
+        statement:
+            "Every scenario came out as its file expects (goal reached, stopped before, blocked)."
+                .to_owned(),
         status,
         evidence: if runs == 0 {
             Evidence::none("no scenario is for this robot")
@@ -314,7 +334,8 @@ fn twins(suite: &SuiteResult) -> Claim {
     };
     Claim {
         id: "TWINS".to_owned(),
-        statement: "The scenarios are dangerous: driven without the guard, the robot touches.".to_owned(),
+        statement: "The scenarios are dangerous: driven without the guard, the robot touches."
+            .to_owned(),
         status,
         evidence,
         counterexamples: Vec::new(),
@@ -327,12 +348,36 @@ fn twins(suite: &SuiteResult) -> Claim {
 pub fn not_claimed() -> Vec<Claim> {
     let property = "property tests in the repository, not run by this command";
     let parts = [
-        ("GUARD", "No accepted tube contains a known point or enters unknown space.", property),
-        ("BRAKE", "An accepted tube always exists or the robot is at rest.", property),
-        ("INPUT", "Input that is malformed, reordered or missing is classified, never ignored.", property),
-        ("MEMORY", "A hit is never lost but by the rule; unknown is never free.", property),
-        ("PROOFS", "Machine-checked proofs on the compiled kernel.", "no proof ledger yet"),
-        ("ADVERSARY", "Seeded hostile runs find no failure while the assumptions hold.", "no search yet"),
+        (
+            "GUARD",
+            "No accepted tube contains a known point or enters unknown space.",
+            property,
+        ),
+        (
+            "BRAKE",
+            "An accepted tube always exists or the robot is at rest.",
+            property,
+        ),
+        (
+            "INPUT",
+            "Input that is malformed, reordered or missing is classified, never ignored.",
+            property,
+        ),
+        (
+            "MEMORY",
+            "A hit is never lost but by the rule; unknown is never free.",
+            property,
+        ),
+        (
+            "PROOFS",
+            "Machine-checked proofs on the compiled kernel.",
+            "no proof ledger yet",
+        ),
+        (
+            "ADVERSARY",
+            "Seeded hostile runs find no failure while the assumptions hold.",
+            "no search yet",
+        ),
         (
             "TIME",
             "The work of a tick stays below a declared bound.",

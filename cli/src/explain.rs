@@ -16,7 +16,11 @@ pub fn explain(id: Option<&str>) -> Result<Exit, Failure> {
         print_list(&requirements());
         say!("\nAssumptions:");
         for found in assumptions() {
-            say!("  {:<14} {}", style(found.id).bold(), first_line(&found.text));
+            say!(
+                "  {:<14} {}",
+                style(found.id).bold(),
+                first_line(&found.text)
+            );
         }
         return Ok(Exit::Holds);
     };
@@ -38,7 +42,10 @@ pub fn explain(id: Option<&str>) -> Result<Exit, Failure> {
 }
 
 fn first_line(text: &str) -> String {
-    text.split("\n\n").next().unwrap_or_default().replace('\n', " ")
+    text.split("\n\n")
+        .next()
+        .unwrap_or_default()
+        .replace('\n', " ")
 }
 
 fn print_list(list: &[Requirement]) {
@@ -75,7 +82,11 @@ pub fn evidence(found: &Requirement) -> Vec<String> {
     let cited = provenance::citations(found.id);
     let mut lines = Vec::new();
     for place in &cited {
-        let how = if place.is_test { "tested in" } else { "implemented in" };
+        let how = if place.is_test {
+            "tested in"
+        } else {
+            "implemented in"
+        };
         lines.push(format!("{how} {}:{}", place.file, place.line));
     }
     if !cited.iter().any(|place| place.is_test) {
@@ -122,7 +133,9 @@ fn unknown(id: &str) -> Failure {
     } else {
         format!("did you mean {}?", near.join(", "))
     };
-    Failure::input(format!("no requirement or assumption is called `{id}`; {hint}"))
+    Failure::input(format!(
+        "no requirement or assumption is called `{id}`; {hint}"
+    ))
 }
 
 #[cfg(test)]

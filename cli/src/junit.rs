@@ -75,5 +75,10 @@ pub fn when(found: &Counterexample) -> String {
 
 /// A counterexample in one line.
 fn sentence(found: &Counterexample) -> String {
-    format!("{}: {} -- replay: {}", when(found), found.what, found.replay)
+    format!(
+        "{}: {} -- replay: {}",
+        when(found),
+        found.what,
+        found.replay
+    )
 }

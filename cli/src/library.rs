@@ -137,7 +137,10 @@ pub fn scenario(path: &Path, variant: Option<&str>) -> Result<(Scenario, usize),
             format!("it has {}", labels.join(", "))
         };
         let wanted = variant.unwrap_or_default();
-        Failure::input(format!("{}: no variant `{wanted}`; {known}", path.display()))
+        Failure::input(format!(
+            "{}: no variant `{wanted}`; {known}",
+            path.display()
+        ))
     })
 }
 
@@ -148,7 +151,10 @@ fn is_shipped(path: &Path) -> bool {
 
 fn shipped_text(path: &Path) -> Option<(&'static str, &'static str)> {
     let stem = path.file_stem()?.to_str()?;
-    EMBEDDED_SCENARIOS.iter().copied().find(|(known, _)| *known == stem)
+    EMBEDDED_SCENARIOS
+        .iter()
+        .copied()
+        .find(|(known, _)| *known == stem)
 }
 
 fn shipped(path: &Path) -> Result<Vec<Scenario>, haltline_scenarios::file::ScenarioError> {

@@ -8,9 +8,7 @@ use crate::report::drawing::{self, Subject};
 use crate::report::words;
 use console::style;
 use haltline_scenarios::batch::{Case, CaseRun, equip, run_case, run_one};
-use haltline_scenarios::result::{
-    Contact, Judgement, MonitorReport, Outcome, RunResult, Stop,
-};
+use haltline_scenarios::result::{Contact, Judgement, MonitorReport, Outcome, RunResult, Stop};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -56,7 +54,11 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
     };
     let case = equip(scenario, &robot).map_err(|error| Failure::input(error.to_string()))?;
     let done = drive(&case, args.naked)?;
-    let subject = if args.naked { Subject::Naked } else { Subject::Guarded };
+    let subject = if args.naked {
+        Subject::Naked
+    } else {
+        Subject::Guarded
+    };
     let written = write_files(&args.out, &done, subject)?;
     let judgement = (!args.naked).then_some(&done.result.judgement);
     let exit = match judgement.map(|judgement| judgement.outcome) {
@@ -151,28 +153,51 @@ fn print_json(case: &Case, done: &CaseRun, naked: bool) -> Result<(), Failure> {
 
 fn print_summary(case: &Case, done: &CaseRun, naked: bool) {
     let run = subject(done, naked);
-    let guard = if naked { "without the guard" } else { "with the guard" };
+    let guard = if naked {
+        "without the guard"
+    } else {
+        "with the guard"
+    };
     say!("{}  {}", style(&done.result.name).bold(), done.result.title);
     say!("{} {guard}, seed {}\n", case.robot.name, done.result.seed);
-    let end = if run.reached { "goal reached" } else { "goal not reached" };
-    say!("  {end} after {:.2} s and {:.2} m", run.time_s, run.travelled_m);
+    let end = if run.reached {
+        "goal reached"
+    } else {
+        "goal not reached"
+    };
+    say!(
+        "  {end} after {:.2} s and {:.2} m",
+        run.time_s,
+        run.travelled_m
+    );
     say!(
         "  {}, {} while moving",
         words::count(run.contacts.len(), "contact"),
         run.moving_contacts()
     );
     for contact in &run.contacts {
-        let how = if contact.robot_moving { "moving" } else { "at rest" };
-        say!("    {:.2} s  {} ({how}, {:.2} m/s)", contact.t_s, contact.body, contact.v_mps);
+        let how = if contact.robot_moving {
+            "moving"
+        } else {
+            "at rest"
+        };
+        say!(
+            "    {:.2} s  {} ({how}, {:.2} m/s)",
+            contact.t_s,
+            contact.body,
+            contact.v_mps
+        );
     }
     if let Some(gap) = words::nearest(run) {
         say!("  nearest {gap}");
     }
     say!("  {}", words::count(run.stops.len(), "stop"));
     for stop in &run.stops {
-        let gap = stop.clearance_m.map_or(String::new(), |gap| format!(", {} left", words::metres(gap)));
-        let (decision, reason) = (words::reason(&stop.decision), words::reason(&stop.reason));
-        say!("    {:.2} s  {decision}: {reason}{gap}", stop.t_s);
+        let gap = stop.clearance_m.map_or(String::new(), |gap| {
+            format!(", {} left", words::metres(gap))
+        });
+        let why = words::why_stopped(&stop.decision, &stop.reason);
+        say!("    {:.2} s  {why}{gap}", stop.t_s);
     }
     for broken in &run.assumptions_broken {
         say!("  breaks {} on purpose: {}", broken.id, broken.what);

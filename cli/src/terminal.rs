@@ -1,7 +1,7 @@
 //! The certificate in a terminal.
 
 use crate::certificate::Certificate;
-use crate::claims::{Claim, Status};
+use crate::claims::{Claim, Status, first_of_each_case};
 use crate::junit;
 use crate::report::words;
 use crate::timing::Timing;
@@ -17,8 +17,18 @@ fn part(name: &str) -> StyledObject<String> {
 
 /// Robot and contract, before the runs begin.
 pub fn contract(robot: &Robot, contract: &Contract) {
-    say!("{}  {}\n", style(&robot.name).bold(), style(&robot.file).dim());
-    let count = |finding| contract.checks.iter().filter(|c| c.finding == finding).count();
+    say!(
+        "{}  {}\n",
+        style(&robot.name).bold(),
+        style(&robot.file).dim()
+    );
+    let count = |finding| {
+        contract
+            .checks
+            .iter()
+            .filter(|c| c.finding == finding)
+            .count()
+    };
     say!(
         "{}{} hold, {} fail, {} not covered",
         part("contract"),
@@ -26,7 +36,11 @@ pub fn contract(robot: &Robot, contract: &Contract) {
         count(Finding::Fails),
         count(Finding::NotCovered)
     );
-    for check in contract.checks.iter().filter(|c| c.finding != Finding::Holds) {
+    for check in contract
+        .checks
+        .iter()
+        .filter(|c| c.finding != Finding::Holds)
+    {
         let mark = match check.finding {
             Finding::Fails => style("fails").red().bold(),
             _ => style("not covered").dim(),
@@ -36,21 +50,38 @@ pub fn contract(robot: &Robot, contract: &Contract) {
     say!(
         "{:11}{}",
         "",
-        style("obstacles up to    top speed   decides                 smallest gap   decides").dim()
+        style("obstacles up to    top speed   decides                 smallest gap   decides")
+            .dim()
     );
     for (speed, gap) in contract.speed_table.iter().zip(&contract.gap_table) {
-        let narrowest = gap.gap_m.map_or_else(|| "none".to_owned(), |gap| format!("{gap:.2} m"));
+        let narrowest = gap
+            .gap_m
+            .map_or_else(|| "none".to_owned(), |gap| format!("{gap:.2} m"));
         say!(
             "{:11}{:>11.1} m/s {:>8.2} m/s   {:<22} {:>13}   {}",
-            "", speed.obstacle_speed_mps, speed.top_speed_mps, speed.decides, narrowest, gap.decides
+            "",
+            speed.obstacle_speed_mps,
+            speed.top_speed_mps,
+            speed.decides,
+            narrowest,
+            gap.decides
         );
     }
     say!("{}not claimed yet", part("proofs"));
 }
 
 /// What came out.
-pub fn summary(certificate: &Certificate, suite: &SuiteResult, timing: &Timing, written: &[PathBuf]) {
-    let as_expected = suite.cases.iter().filter(|c| c.judgement.outcome == Outcome::Pass).count();
+pub fn summary(
+    certificate: &Certificate,
+    suite: &SuiteResult,
+    timing: &Timing,
+    written: &[PathBuf],
+) {
+    let as_expected = suite
+        .cases
+        .iter()
+        .filter(|c| c.judgement.outcome == Outcome::Pass)
+        .count();
     let naked = suite.cases.iter().filter_map(|c| c.naked.as_ref());
     let touched = naked.clone().filter(|n| !n.contacts.is_empty()).count();
     say!(
@@ -69,11 +100,24 @@ pub fn summary(certificate: &Certificate, suite: &SuiteResult, timing: &Timing, 
             tick.max_us,
             tick.ticks
         ),
-        None => say!("{}not measured: the kernel refuses this robot", part("timing")),
+        None => say!(
+            "{}not measured: the kernel refuses this robot",
+            part("timing")
+        ),
     }
     say!("");
-    for claim in &certificate.claims {
-        say!("  {:<12} {}  {}", claim.id, status(claim.status), claim.evidence.words);
+    // What the contract does not cover was said above.
+    let shown = certificate
+        .claims
+        .iter()
+        .filter(|claim| !claim.id.starts_with("C-"));
+    for claim in shown {
+        say!(
+            "  {:<12} {}  {}",
+            claim.id,
+            status(claim.status),
+            claim.evidence.words
+        );
     }
     for claim in &certificate.claims {
         counterexamples(claim);
@@ -101,22 +145,31 @@ fn counterexamples(claim: &Claim) {
         return;
     }
     say!("\n{} does not hold:", style(&claim.id).red().bold());
-    for found in claim.counterexamples.iter().take(SHOWN) {
-        say!("  {}", junit::when(found));
+    let told = first_of_each_case(&claim.counterexamples);
+    for (found, again) in told.iter().take(SHOWN) {
+        let again = match again {
+            0 => String::new(),
+            more => format!(" (and {more} more times)"),
+        };
+        say!("  {}{again}", junit::when(found));
         say!("    {}", found.what);
         say!("    replay: {}", found.replay);
     }
-    let more = claim.counterexamples.len().saturating_sub(SHOWN);
+    let more = told.len().saturating_sub(SHOWN);
     if more > 0 {
-        say!("  and {more} more in certificate.json");
+        say!("  and {} more; see report.html", words::count(more, "run"));
     }
 }
 
 fn verdict(certificate: &Certificate) -> StyledObject<String> {
     let verdict = &certificate.verdict;
     match verdict.result {
-        "holds" => style("Every claim that is made holds.".to_owned()).green().bold(),
-        "failed" => style(format!("{} failed.", words::count(verdict.failed, "claim"))).red().bold(),
+        "holds" => style("Every claim that is made holds.".to_owned())
+            .green()
+            .bold(),
+        "failed" => style(format!("{} failed.", words::count(verdict.failed, "claim")))
+            .red()
+            .bold(),
         _ => style(format!(
             "Not checkable: evidence is missing for {}.",
             words::count(verdict.not_checkable, "claim")

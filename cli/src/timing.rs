@@ -45,7 +45,12 @@ pub struct TickTimes {
 pub fn ticks(robot: &Robot) -> Option<TickTimes> {
     let mut kernel = Box::new(haltline::Kernel::<SCANNERS, BEAMS, MEMORY>::new(robot.config).ok()?);
     let period = robot.config.timing.period;
-    let sweeps: Vec<Vec<Beam>> = robot.values.scanners.iter().map(|s| room(robot, s)).collect();
+    let sweeps: Vec<Vec<Beam>> = robot
+        .values
+        .scanners
+        .iter()
+        .map(|s| room(robot, s))
+        .collect();
     let mut now = Instant::default().plus(Duration::from_ms(3_600_000));
     let mut times = Vec::with_capacity(TICKS);
     for tick in 0..TICKS {

@@ -6,7 +6,7 @@ use common::{WALL_AHEAD, expect_exit, folder, haltline, root, stderr, stdout, wr
 use std::path::Path;
 
 /// The smallest set of shipped scenarios that exercises every monitor, and a wall.
-const SMALL: [&str; 3] = ["emergency_stop", "corridor_ahead", "input_scan_late"];
+const SMALL: [&str; 3] = ["emergency_stop", "corridor_ahead", "overtaking"];
 
 fn small_folder(name: &str) -> std::path::PathBuf {
     let scenarios = folder(name);
@@ -39,7 +39,9 @@ fn two_runs_give_the_same_bytes_but_for_the_times() {
         assert!(stdout(&output).contains("Every claim that is made holds."));
     }
     for name in ["report.html", "certificate.json", "junit.xml"] {
-        let [a, b] = outs.each_ref().map(|out| std::fs::read(out.join(name)).expect(name));
+        let [a, b] = outs
+            .each_ref()
+            .map(|out| std::fs::read(out.join(name)).expect(name));
         assert!(!a.is_empty() && a == b, "{name} differs between two runs");
     }
     let json = std::fs::read_to_string(outs[0].join("certificate.json")).expect("json");
@@ -47,7 +49,10 @@ fn two_runs_give_the_same_bytes_but_for_the_times() {
     assert_eq!(certificate["schema"], "haltline-certificate/1");
     assert_eq!(certificate["verdict"]["exit_code"], 0);
     assert_eq!(certificate["cases"].as_array().map(Vec::len), Some(4));
-    assert_eq!(certificate["scenario_files"].as_array().map(Vec::len), Some(4));
+    assert_eq!(
+        certificate["scenario_files"].as_array().map(Vec::len),
+        Some(4)
+    );
     assert!(!json.to_lowercase().contains("\"proved\""));
     let timing = std::fs::read_to_string(outs[0].join("timing.json")).expect("timing");
     assert!(timing.contains("scenarios_s"));
@@ -64,7 +69,13 @@ fn every_key_of_the_certificate_is_documented() {
     let documented = std::fs::read_to_string(root().join("cli/CERTIFICATE.md")).expect("schema");
     let claim = &certificate["claims"][0];
     let case = &certificate["cases"][0];
-    for object in [&certificate, claim, case, &case["guarded"], &certificate["verdict"]] {
+    for object in [
+        &certificate,
+        claim,
+        case,
+        &case["guarded"],
+        &certificate["verdict"],
+    ] {
         for key in object.as_object().expect("object").keys() {
             assert!(documented.contains(key), "CERTIFICATE.md lacks `{key}`");
         }
@@ -77,14 +88,22 @@ fn what_no_run_exercised_is_not_checkable() {
     write(&scenarios, "wall_ahead.toml", WALL_AHEAD);
     let output = certify(&scenarios, &folder("certify_one"));
     expect_exit(&output, 3);
-    assert!(stdout(&output).contains("not checkable"), "{}", stdout(&output));
+    assert!(
+        stdout(&output).contains("not checkable"),
+        "{}",
+        stdout(&output)
+    );
 }
 
 #[test]
 fn a_scenario_that_does_not_come_true_fails_and_names_its_replay() {
     let scenarios = folder("certify_fails_scenarios");
     let wrong = WALL_AHEAD.replace("reached = false", "reached = true");
-    write(&scenarios, "wall_ahead.toml", &wrong.replace("blocked = true", ""));
+    write(
+        &scenarios,
+        "wall_ahead.toml",
+        &wrong.replace("blocked = true", ""),
+    );
     let out = folder("certify_fails");
     let output = certify(&scenarios, &out);
     expect_exit(&output, 1);
@@ -110,20 +129,33 @@ fn no_scenario_for_the_robot_is_not_checkable() {
     let out = robots.join("out").display().to_string();
     let output = haltline(&["certify", &robot, "--out", &out]);
     expect_exit(&output, 3);
-    assert!(stderr(&output).contains("robot = \"somebody_else\""), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("robot = \"somebody_else\""),
+        "{}",
+        stderr(&output)
+    );
 }
 
 #[test]
 fn a_bad_robot_file_is_named_with_its_line() {
     let robots = folder("certify_bad_robot");
     let text = std::fs::read_to_string(root().join("robots/seekur_jr.toml")).expect("robot");
-    let robot = write(&robots, "bad.toml", &text.replacen("period_s", "perjod_s", 1));
+    let robot = write(
+        &robots,
+        "bad.toml",
+        &text.replacen("period_s", "perjod_s", 1),
+    );
     let output = haltline(&["certify", &robot]);
     expect_exit(&output, 2);
     assert!(stderr(&output).contains("bad.toml:"), "{}", stderr(&output));
     expect_exit(&haltline(&["certify", "no/such/robot.toml"]), 2);
     expect_exit(
-        &haltline(&["certify", "robots/seekur_jr.toml", "--scenarios", "no/such/folder"]),
+        &haltline(&[
+            "certify",
+            "robots/seekur_jr.toml",
+            "--scenarios",
+            "no/such/folder",
+        ]),
         2,
     );
 }

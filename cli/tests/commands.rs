@@ -34,7 +34,10 @@ fn the_trace_confirms_what_the_summary_says() {
         .map(|step| step["x_m"].as_f64().expect("x_m"))
         .fold(f64::MIN, f64::max);
     // The front edge of the robot is 0.6 m before its centre, the wall at 3 m.
-    assert!(farthest > 0.5 && farthest + 0.6 < 3.0, "came to x = {farthest} m");
+    assert!(
+        farthest > 0.5 && farthest + 0.6 < 3.0,
+        "came to x = {farthest} m"
+    );
     let picture = std::fs::read(out.join("run.png")).expect("picture");
     assert!(picture.starts_with(b"\x89PNG"));
     assert!(out.join("run.svg").is_file() && out.join("trace_naked.jsonl").is_file());
@@ -45,10 +48,15 @@ fn the_same_run_gives_the_same_files() {
     let outs = [folder("run_same_a"), folder("run_same_b")];
     let file = write(&outs[0], "wall_ahead.toml", WALL_AHEAD);
     for out in &outs {
-        expect_exit(&haltline(&["run", &file, "--out", &out.display().to_string()]), 0);
+        expect_exit(
+            &haltline(&["run", &file, "--out", &out.display().to_string()]),
+            0,
+        );
     }
     for name in ["trace.jsonl", "trace_naked.jsonl", "run.svg", "run.png"] {
-        let [a, b] = outs.each_ref().map(|out| std::fs::read(out.join(name)).expect(name));
+        let [a, b] = outs
+            .each_ref()
+            .map(|out| std::fs::read(out.join(name)).expect(name));
         assert!(a == b, "{name} differs");
     }
 }
@@ -81,13 +89,22 @@ fn a_bad_scenario_is_named_with_its_line() {
     let file = write(&out, "bad.toml", &WALL_AHEAD.replacen("seed", "sead", 1));
     let output = haltline(&["run", &file]);
     expect_exit(&output, 2);
-    assert!(stderr(&output).contains("bad.toml:6:"), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("bad.toml:6:"),
+        "{}",
+        stderr(&output)
+    );
     expect_exit(&haltline(&["run", "no/such/scenario.toml"]), 2);
 }
 
 #[test]
 fn an_unknown_variant_lists_the_known_ones() {
-    let output = haltline(&["run", "scenarios/files/crossing.toml", "--variant", "nonsense"]);
+    let output = haltline(&[
+        "run",
+        "scenarios/files/crossing.toml",
+        "--variant",
+        "nonsense",
+    ]);
     expect_exit(&output, 2);
     assert!(stderr(&output).contains("it has "), "{}", stderr(&output));
 }
@@ -97,14 +114,25 @@ fn explain_prints_text_assumptions_and_evidence() {
     let output = haltline(&["explain", "guard-01"]);
     expect_exit(&output, 0);
     let text = stdout(&output);
-    for part in ["GUARD-01", "MUST", "Assumes", "A-SENSOR", "Evidence", "not claimed yet"] {
+    for part in [
+        "GUARD-01",
+        "MUST",
+        "Assumes",
+        "A-SENSOR",
+        "Evidence",
+        "not claimed yet",
+    ] {
         assert!(text.contains(part), "lacks `{part}`:\n{text}");
     }
     expect_exit(&haltline(&["explain", "A-BRAKE"]), 0);
     expect_exit(&haltline(&["explain"]), 0);
     let unknown = haltline(&["explain", "GUARD-1"]);
     expect_exit(&unknown, 2);
-    assert!(stderr(&unknown).contains("did you mean"), "{}", stderr(&unknown));
+    assert!(
+        stderr(&unknown).contains("did you mean"),
+        "{}",
+        stderr(&unknown)
+    );
 }
 
 #[test]
@@ -115,8 +143,15 @@ fn new_robot_writes_a_file_that_parses_and_overwrites_nothing() {
     assert!(text.contains("[footprint]"));
     let again = haltline_in(&out, &["new", "robot", "mine.toml"]);
     expect_exit(&again, 2);
-    assert!(stderr(&again).contains("not overwritten"), "{}", stderr(&again));
-    assert_eq!(std::fs::read_to_string(out.join("mine.toml")).expect("still there"), text);
+    assert!(
+        stderr(&again).contains("not overwritten"),
+        "{}",
+        stderr(&again)
+    );
+    assert_eq!(
+        std::fs::read_to_string(out.join("mine.toml")).expect("still there"),
+        text
+    );
     // The template is a robot file, but no scenario is for it.
     expect_exit(&haltline_in(&out, &["certify", "mine.toml"]), 3);
 }
@@ -126,12 +161,20 @@ fn help_teaches() {
     let output = haltline(&["--help"]);
     expect_exit(&output, 0);
     let text = stdout(&output);
-    for part in ["Examples:", "haltline new robot", "Exit codes:", "not checkable"] {
+    for part in [
+        "Examples:",
+        "haltline new robot",
+        "Exit codes:",
+        "not checkable",
+    ] {
         assert!(text.contains(part), "lacks `{part}`");
     }
     for command in ["certify", "run", "replay", "explain"] {
         let text = stdout(&haltline(&[command, "--help"]));
-        assert!(text.contains("Example"), "{command} --help lacks an example");
+        assert!(
+            text.contains("Example"),
+            "{command} --help lacks an example"
+        );
     }
     expect_exit(&haltline(&["certfy"]), 2);
 }

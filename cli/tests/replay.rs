@@ -33,7 +33,14 @@ fn drive_at_wall(wall_m: f64, speed_mps: f64) -> String {
 fn replay(name: &str, log: &str) -> (std::process::Output, PathBuf) {
     let out = folder(name);
     let file = write(&out, "drive.csv", log);
-    let args = ["replay", "--format", "sena", &file, "--out", &out.display().to_string()];
+    let args = [
+        "replay",
+        "--format",
+        "sena",
+        &file,
+        "--out",
+        &out.display().to_string(),
+    ];
     (haltline(&args), out)
 }
 
@@ -52,7 +59,10 @@ fn driving_at_a_wall_is_braked_and_the_wall_is_named() {
         .collect();
     let first = braked.first().expect("it brakes for the wall");
     let x_m = first["point_m"][0].as_f64().expect("a point");
-    assert!((x_m - 9.0).abs() < 0.1, "the deciding point is at x = {x_m} m");
+    assert!(
+        (x_m - 9.0).abs() < 0.1,
+        "the deciding point is at x = {x_m} m"
+    );
     for name in ["replay.png", "replay.svg"] {
         assert!(out.join(name).is_file(), "{name} is missing");
     }
@@ -74,29 +84,49 @@ fn a_bad_line_is_an_error_with_its_number() {
     let log = drive_at_wall(9.0, 1.0).replacen("\n0.250,", "\n0.250,oops,", 1);
     let (output, _) = replay("replay_bad", &log);
     expect_exit(&output, 2);
-    assert!(stderr(&output).contains("drive.csv:4: "), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("drive.csv:4: "),
+        "{}",
+        stderr(&output)
+    );
 }
 
 #[test]
 fn a_missing_log_is_said_clearly() {
     let output = haltline(&["replay", "--format", "sena", "no/such/log.csv.gz"]);
     expect_exit(&output, 2);
-    assert!(stderr(&output).contains("no such file"), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("no such file"),
+        "{}",
+        stderr(&output)
+    );
 }
 
 #[test]
 fn a_robot_that_does_not_fit_the_log_is_refused() {
     let out = folder("replay_misfit");
     let file = write(&out, "drive.csv", &drive_at_wall(9.0, 1.0));
-    let args = ["replay", "--format", "sena", &file, "--robot", "robots/seekur_jr.toml"];
+    let args = [
+        "replay",
+        "--format",
+        "sena",
+        &file,
+        "--robot",
+        "robots/seekur_jr.toml",
+    ];
     let output = haltline(&args);
     expect_exit(&output, 2);
-    assert!(stderr(&output).contains("does not fit the log"), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("does not fit the log"),
+        "{}",
+        stderr(&output)
+    );
 }
 
 #[test]
 fn the_recorded_drive_is_read_to_its_end() {
-    let data = std::env::var_os("HALTLINE_DATA").map_or_else(|| root().join("../shared/data"), PathBuf::from);
+    let data = std::env::var_os("HALTLINE_DATA")
+        .map_or_else(|| root().join("../shared/data"), PathBuf::from);
     let log = data.join("sena/sena.csv.gz");
     if !log.is_file() {
         eprintln!("skipped: {} is not there", log.display());

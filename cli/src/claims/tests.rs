@@ -1,6 +1,7 @@
 use super::*;
 use haltline_scenarios::result::{
-    Contact, FootprintRecord, Judgement, PoseRecord, RunResult, Violation, WorldRecord,
+    BrokenAssumption, Contact, FootprintRecord, Judgement, PoseRecord, RunResult, Violation,
+    WorldRecord,
 };
 
 fn run(monitors: Vec<MonitorReport>) -> RunResult {
@@ -94,12 +95,18 @@ fn a_vacuous_or_missing_monitor_is_not_checkable() {
 
 #[test]
 fn a_violation_names_time_tick_and_replay() {
-    let claims = from_suite(&suite(run(vec![monitor("ZONE", 3, &[0.4])]), None), &replay());
+    let claims = from_suite(
+        &suite(run(vec![monitor("ZONE", 3, &[0.4])]), None),
+        &replay(),
+    );
     let zone = find(&claims, "ZONE");
     assert_eq!(zone.status, Status::Failed);
     let found = &zone.counterexamples[0];
     assert_eq!((found.t_s, found.tick), (Some(0.4), Some(10)));
-    assert_eq!(found.replay, "haltline run my/poles.toml --variant 'gap=0.9'");
+    assert_eq!(
+        found.replay,
+        "haltline run my/poles.toml --variant 'gap=0.9'"
+    );
 }
 
 #[test]
@@ -110,13 +117,44 @@ fn a_robot_of_ones_own_is_named_in_the_replay() {
     };
     let suite = suite(run(vec![]), None);
     let command = own.command(&suite.cases[0]);
-    assert_eq!(command, "haltline run my/poles.toml --variant 'gap=0.9' --robot my.toml");
+    assert_eq!(
+        command,
+        "haltline run my/poles.toml --variant 'gap=0.9' --robot my.toml"
+    );
 }
 
 #[test]
 fn a_violation_outside_the_engaged_ticks_still_fails() {
-    let claims = from_suite(&suite(run(vec![monitor("ZONE", 0, &[0.4])]), None), &replay());
+    let claims = from_suite(
+        &suite(run(vec![monitor("ZONE", 0, &[0.4])]), None),
+        &replay(),
+    );
     assert_eq!(find(&claims, "ZONE").status, Status::Failed);
+}
+
+#[test]
+fn a_run_that_breaks_an_assumption_is_no_evidence() {
+    let mut broken = run(vec![monitor("CLAIM", 3, &[])]);
+    broken.assumptions_broken.push(BrokenAssumption {
+        id: "A-BRAKE".into(),
+        what: "half the brakes".into(),
+    });
+    let claims = from_suite(&suite(broken.clone(), None), &replay());
+    assert_eq!(find(&claims, "CLAIM").status, Status::NotCheckable);
+    broken.monitors = vec![monitor("CLAIM", 3, &[0.4])];
+    let claims = from_suite(&suite(broken, None), &replay());
+    assert_eq!(find(&claims, "CLAIM").status, Status::Failed);
+}
+
+#[test]
+fn many_ticks_of_one_case_are_told_once() {
+    let claims = from_suite(
+        &suite(run(vec![monitor("ZONE", 3, &[0.4, 0.44])]), None),
+        &replay(),
+    );
+    let told = first_of_each_case(&find(&claims, "ZONE").counterexamples);
+    assert_eq!(told.len(), 1);
+    assert_eq!(told[0].1, 1);
 }
 
 #[test]
@@ -127,7 +165,11 @@ fn an_empty_suite_claims_nothing() {
         failed: 0,
     };
     let claims = from_suite(&empty, &replay());
-    assert!(claims.iter().all(|claim| claim.status == Status::NotCheckable));
+    assert!(
+        claims
+            .iter()
+            .all(|claim| claim.status == Status::NotCheckable)
+    );
 }
 
 #[test]
@@ -144,7 +186,10 @@ fn a_naked_twin_that_touches_is_counted() {
     let claims = from_suite(&suite(run(vec![]), Some(naked)), &replay());
     let twins = find(&claims, "TWINS");
     assert_eq!(twins.status, Status::Holds);
-    assert_eq!(twins.evidence.words, "tested (1 naked run, of which 1 touched)");
+    assert_eq!(
+        twins.evidence.words,
+        "tested (1 naked run, of which 1 touched)"
+    );
 }
 
 #[test]
@@ -160,5 +205,9 @@ fn a_failed_case_fails_the_scenarios() {
 fn nothing_is_worded_as_proof() {
     let mut claims = from_suite(&suite(run(vec![]), None), &replay());
     claims.extend(not_claimed());
-    assert!(claims.iter().all(|claim| !claim.evidence.words.contains("proved")));
+    assert!(
+        claims
+            .iter()
+            .all(|claim| !claim.evidence.words.contains("proved"))
+    );
 }

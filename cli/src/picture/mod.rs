@@ -53,6 +53,15 @@ pub enum Item {
         /// What they mean.
         style: Style,
     },
+    /// Something that moves when the reader clicks on the picture; a still picture leaves it out.
+    Actor {
+        /// Corners around the actor's own origin.
+        outline: Vec<[f64; 2]>,
+        /// Seconds of the reader's time, x, y, and degrees clockwise, in order of time.
+        frames: Vec<[f64; 4]>,
+        /// What it means.
+        style: Style,
+    },
     /// One line of text.
     Text {
         /// Anchor point on the base line.
@@ -75,6 +84,8 @@ pub struct Picture {
     pub height: f64,
     /// What the picture shows, for readers who cannot see it.
     pub title: String,
+    /// Name of the picture within a page, if it has actors.
+    pub id: Option<String>,
     /// Things to draw, first at the bottom.
     pub items: Vec<Item>,
 }
@@ -87,6 +98,7 @@ impl Picture {
             width,
             height,
             title: title.into(),
+            id: None,
             items: Vec::new(),
         }
     }
@@ -133,6 +145,17 @@ impl Picture {
             self.items.push(Item::Dots {
                 points,
                 size,
+                style,
+            });
+        }
+    }
+
+    /// Adds something that moves; fewer than two frames are left out.
+    pub fn actor(&mut self, outline: Vec<[f64; 2]>, frames: Vec<[f64; 4]>, style: Style) {
+        if frames.len() > 1 && outline.len() > 2 {
+            self.items.push(Item::Actor {
+                outline,
+                frames,
                 style,
             });
         }

@@ -34,7 +34,7 @@ pub fn draw(picture: &mut Picture, origin: [f64; 2], size: [f64; 2], end_s: f64,
     let values = plot.samples.iter().map(|s| s[1].min(plot.cap));
     let low = values.clone().fold(0.0, f64::min);
     let top = plot.limit.map_or(0.0, |(limit, _)| limit);
-    let high = values.fold(top, f64::max).max(low + 1e-3) * 1.05;
+    let high = values.fold(top, f64::max).max(low + 0.1) * 1.05;
     let at = |[t, v]: [f64; 2]| {
         [
             zero[0] + inner[0] * (t / end_s).clamp(0.0, 1.0),
@@ -83,7 +83,7 @@ fn draw_axes(
         picture.text([zero[0] - 4.0, y + 4.0], Anchor::End, Style::Label, text);
         value += step;
     }
-    let step = round_step(end_s, 6.0);
+    let step = round_step(end_s, 4.0);
     let mut t = 0.0;
     while t <= end_s * 1.000_001 {
         let x = zero[0] + inner[0] * t / end_s;

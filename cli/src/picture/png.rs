@@ -50,6 +50,7 @@ pub fn encode(picture: &Picture, zoom: f32) -> Option<Vec<u8>> {
                     draw(&mut canvas, &path, *style, zoom);
                 }
             }
+            Item::Actor { .. } => {}
             Item::Text {
                 at,
                 text,

@@ -18,6 +18,7 @@ pub enum Style {
     Swept,
     Footprint,
     FootprintStop,
+    Actor,
     Start,
     Goal,
     PathPass,
@@ -117,7 +118,7 @@ const fn text(class: &'static str, light: u32, dark: u32, size: f64) -> Look {
 
 impl Style {
     /// Every style, for writing the style sheet.
-    pub const ALL: [Self; 43] = [
+    pub const ALL: [Self; 44] = [
         Self::Paper,
         Self::Frame,
         Self::Grid,
@@ -131,6 +132,7 @@ impl Style {
         Self::Swept,
         Self::Footprint,
         Self::FootprintStop,
+        Self::Actor,
         Self::Start,
         Self::Goal,
         Self::PathPass,
@@ -210,6 +212,12 @@ impl Style {
                 0xc0_27_2d,
                 0xff_7b_7b,
                 0.14,
+            ),
+            Self::Actor => filled(
+                stroke("actor", 0x0b_3d_c2, 0xcf_e0_ff, 1.8),
+                0x25_63_eb,
+                0x7a_a8_f8,
+                0.55,
             ),
             Self::Start => filled(
                 stroke("start", 0x1d_25_30, 0xe6_ea_f0, 1.2),

@@ -35,12 +35,16 @@ fn px(value: f64) -> String {
 pub fn element(picture: &Picture) -> String {
     let title = escape(&picture.title);
     let (w, h) = (px(picture.width), px(picture.height));
+    let id = picture
+        .id
+        .as_deref()
+        .map_or(String::new(), |id| format!(" id=\"{}\"", escape(id)));
     let mut out = format!(
-        "<svg class=\"hl\" viewBox=\"0 0 {w} {h}\" role=\"img\" aria-label=\"{title}\">\
+        "<svg class=\"hl\"{id} viewBox=\"0 0 {w} {h}\" role=\"img\" aria-label=\"{title}\">\
          <title>{title}</title>\n"
     );
     for item in &picture.items {
-        write_item(&mut out, item);
+        write_item(&mut out, item, picture.id.as_deref());
     }
     out.push_str("</svg>\n");
     out
@@ -64,7 +68,7 @@ pub fn file(picture: &Picture) -> String {
     )
 }
 
-fn write_item(out: &mut String, item: &Item) {
+fn write_item(out: &mut String, item: &Item, id: Option<&str>) {
     match item {
         Item::Line {
             points,
@@ -106,6 +110,15 @@ fn write_item(out: &mut String, item: &Item) {
             }
             out.push_str("\"/>\n");
         }
+        Item::Actor {
+            outline,
+            frames,
+            style,
+        } => {
+            if let Some(id) = id {
+                write_actor(out, outline, frames, style.look().class, &escape(id));
+            }
+        }
         Item::Text {
             at,
             text,
@@ -127,6 +140,35 @@ fn write_item(out: &mut String, item: &Item) {
             );
         }
     }
+}
+
+/// Hidden until the picture is clicked; then it runs through its frames once and stays.
+fn write_actor(out: &mut String, outline: &[[f64; 2]], frames: &[[f64; 4]], class: &str, id: &str) {
+    let end_s = frames.last().map_or(0.0, |frame| frame[0]).max(0.1);
+    let (mut times, mut places, mut angles) = (String::new(), String::new(), String::new());
+    for (index, [t_s, x, y, degrees]) in frames.iter().enumerate() {
+        let separator = if index == 0 { "" } else { ";" };
+        // The last key time must be exactly one.
+        let part = if index + 1 == frames.len() {
+            1.0
+        } else {
+            t_s / end_s
+        };
+        let _ = write!(times, "{separator}{:.4}", part.clamp(0.0, 1.0));
+        let _ = write!(places, "{separator}{} {}", px(*x), px(*y));
+        let _ = write!(angles, "{separator}{}", px(*degrees));
+    }
+    let timing =
+        format!("begin=\"{id}.click\" dur=\"{end_s:.1}s\" fill=\"freeze\" keyTimes=\"{times}\"");
+    let _ = write!(
+        out,
+        "<g visibility=\"hidden\"><set attributeName=\"visibility\" to=\"visible\" begin=\"{id}.click\"/>\
+         <animateTransform attributeName=\"transform\" type=\"translate\" values=\"{places}\" {timing}/>\
+         <g><animateTransform attributeName=\"transform\" type=\"rotate\" values=\"{angles}\" {timing}/>\
+         <path class=\"{class}\" d=\""
+    );
+    path_data(out, outline, true);
+    out.push_str("\"/></g></g>\n");
 }
 
 fn path_data(out: &mut String, points: &[[f64; 2]], closed: bool) {
@@ -159,6 +201,24 @@ mod tests {
         assert_eq!(px(-0.01), "0");
         assert_eq!(px(1.26), "1.3");
         assert_eq!(px(f64::NAN), "0");
+    }
+
+    #[test]
+    fn an_actor_moves_only_in_a_named_picture() {
+        let mut picture = Picture::new(10.0, 10.0, "t");
+        let outline = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
+        picture.actor(
+            outline,
+            vec![[0.0, 1.0, 2.0, 0.0], [2.0, 3.0, 4.0, 90.0]],
+            Style::Footprint,
+        );
+        assert!(!element(&picture).contains("animateTransform"));
+        picture.id = Some("p1".into());
+        let svg = element(&picture);
+        assert!(
+            svg.contains("begin=\"p1.click\"") && svg.contains("values=\"1 2;3 4\""),
+            "{svg}"
+        );
     }
 
     #[test]

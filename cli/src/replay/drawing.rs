@@ -63,9 +63,19 @@ pub fn close_up(scene: &Scene<'_>, index: usize) -> Option<Picture> {
     let moment = scene.moments.get(event.first)?;
     let judged = scene.judged.get(event.first)?;
     // Between two rows, the newest sweep is the one before.
-    let swept = scene.moments.get(..=event.first)?.iter().rev().find(|m| m.row.is_some())?;
+    let swept = scene
+        .moments
+        .get(..=event.first)?
+        .iter()
+        .rev()
+        .find(|m| m.row.is_some())?;
     let [x, y, _] = moment.pose;
-    let view = View::fit([x - HALF_M, y - HALF_M], [x + HALF_M, y + HALF_M], [0.0, 0.0], [SIDE, SIDE]);
+    let view = View::fit(
+        [x - HALF_M, y - HALF_M],
+        [x + HALF_M, y + HALF_M],
+        [0.0, 0.0],
+        [SIDE, SIDE],
+    );
     let title = format!("{}. {}", index + 1, event.sentence());
     let mut picture = Picture::new(SIDE, SIDE + 46.0, title.clone());
     picture.rect([0.0, 0.0], [SIDE, SIDE + 46.0], Style::Paper);
@@ -79,7 +89,12 @@ pub fn close_up(scene: &Scene<'_>, index: usize) -> Option<Picture> {
     draw_event(&mut picture, scene, event, index + 1, &view);
     cover_outside(&mut picture, [SIDE, SIDE], SIDE + 46.0);
     draw_scale(&mut picture, &view);
-    picture.text([12.0, SIDE + 20.0], Anchor::Start, Style::LabelStrong, title);
+    picture.text(
+        [12.0, SIDE + 20.0],
+        Anchor::Start,
+        Style::LabelStrong,
+        title,
+    );
     let about = format!(
         "black: newest sweep   teal: {} remembered points   green: seen free   red: footprint and deciding point",
         judged.memory_m.len()
@@ -105,7 +120,12 @@ fn draw_points(picture: &mut Picture, scene: &Scene<'_>, view: &View, size: f64)
             .collect()
     };
     let memory = fresh(&mut scene.judged.iter().flat_map(|j| j.memory_m.iter().copied()));
-    let returns = fresh(&mut scene.moments.iter().flat_map(|m| m.returns_m.iter().copied()));
+    let returns = fresh(
+        &mut scene
+            .moments
+            .iter()
+            .flat_map(|m| m.returns_m.iter().copied()),
+    );
     picture.dots(returns, size, Style::Scan);
     picture.dots(memory, size + 0.6, Style::Memory);
 }
@@ -118,11 +138,16 @@ fn draw_path(picture: &mut Picture, scene: &Scene<'_>, view: &View) {
 }
 
 fn draw_event(picture: &mut Picture, scene: &Scene<'_>, event: &Event, number: usize, view: &View) {
-    let (Some(moment), Some(judged)) = (scene.moments.get(event.first), scene.judged.get(event.first))
-    else {
+    let (Some(moment), Some(judged)) = (
+        scene.moments.get(event.first),
+        scene.judged.get(event.first),
+    ) else {
         return;
     };
-    picture.polygon(view.all(&outline(moment.pose, scene.edges)), Style::FootprintStop);
+    picture.polygon(
+        view.all(&outline(moment.pose, scene.edges)),
+        Style::FootprintStop,
+    );
     let centre = view.at([moment.pose[0], moment.pose[1]]);
     if let Some(point) = judged.point_m {
         let at = view.at(point);
@@ -137,12 +162,20 @@ fn draw_event(picture: &mut Picture, scene: &Scene<'_>, event: &Event, number: u
 }
 
 fn draw_ends(picture: &mut Picture, scene: &Scene<'_>, view: &View) {
-    let ends = [(scene.moments.first(), "start"), (scene.moments.last(), "end")];
+    let ends = [
+        (scene.moments.first(), "start"),
+        (scene.moments.last(), "end"),
+    ];
     for (moment, word) in ends {
         let Some(moment) = moment else { continue };
         picture.polygon(view.all(&outline(moment.pose, scene.edges)), Style::Start);
         let [x, y] = view.at([moment.pose[0], moment.pose[1]]);
-        picture.text([x + 12.0, y - 10.0], Anchor::Start, Style::LabelStrong, word);
+        picture.text(
+            [x + 12.0, y - 10.0],
+            Anchor::Start,
+            Style::LabelStrong,
+            word,
+        );
     }
 }
 
@@ -170,7 +203,12 @@ fn draw_scale(picture: &mut Picture, view: &View) {
 }
 
 fn draw_panel(picture: &mut Picture, scene: &Scene<'_>, x: f64, height: f64) {
-    picture.text([x, 28.0], Anchor::Start, Style::LabelStrong, scene.title.clone());
+    picture.text(
+        [x, 28.0],
+        Anchor::Start,
+        Style::LabelStrong,
+        scene.title.clone(),
+    );
     let mut y = 54.0;
     let lines = [
         (Style::PathPass, "guard would pass the motion"),
@@ -188,19 +226,41 @@ fn draw_panel(picture: &mut Picture, scene: &Scene<'_>, x: f64, height: f64) {
         (Style::Memory, 4.0, "returns the guard remembered"),
     ];
     for (style, size, text) in points {
-        let dots = (0..5).map(|i| [x + 3.0 + 5.0 * f64::from(i), y - 4.0]).collect();
+        let dots = (0..5)
+            .map(|i| [x + 3.0 + 5.0 * f64::from(i), y - 4.0])
+            .collect();
         picture.dots(dots, size, style);
         picture.text([x + 36.0, y], Anchor::Start, Style::Label, text);
         y += 18.0;
     }
     picture.rect([x, y - 11.0], [26.0, 12.0], Style::KnownFree);
-    picture.text([x + 36.0, y], Anchor::Start, Style::Label, "seen free by some beam");
+    picture.text(
+        [x + 36.0, y],
+        Anchor::Start,
+        Style::Label,
+        "seen free by some beam",
+    );
     y += 34.0;
-    picture.text([x, y], Anchor::Start, Style::LabelStrong, "where it would have braked or stopped");
+    picture.text(
+        [x, y],
+        Anchor::Start,
+        Style::LabelStrong,
+        "where it would have braked or stopped",
+    );
     y += 20.0;
-    for (index, event) in scene.events.iter().enumerate().filter(|(_, event)| event.is_stop()) {
+    for (index, event) in scene
+        .events
+        .iter()
+        .enumerate()
+        .filter(|(_, event)| event.is_stop())
+    {
         if y > height - 30.0 {
-            picture.text([x, y], Anchor::Start, Style::Label, "... more in replay.json");
+            picture.text(
+                [x, y],
+                Anchor::Start,
+                Style::Label,
+                "... more in replay.json",
+            );
             break;
         }
         let text = format!("{:>3}  {}", index + 1, event.sentence());

@@ -75,7 +75,9 @@ pub fn course(log: &Log, period_s: f64) -> Vec<Moment> {
 fn link(moments: &mut [Moment]) {
     let speeds: Vec<[f64; 2]> = moments.iter().map(|moment| moment.speed).collect();
     for (index, moment) in moments.iter_mut().enumerate() {
-        moment.told = index.checked_sub(1).map_or([0.0; 2], |before| speeds[before]);
+        moment.told = index
+            .checked_sub(1)
+            .map_or([0.0; 2], |before| speeds[before]);
         moment.wanted = speeds.get(index + 1).copied().unwrap_or([0.0; 2]);
     }
 }
@@ -126,14 +128,21 @@ fn twist(log: &Log, poses: &[Pose], index: usize) -> [f64; 2] {
     if span_s <= 0.0 {
         return [0.0, 0.0];
     }
-    let path: f64 = log.rows[from + 1..=to].iter().map(|row| arc_m(row.increment_m_rad)).sum();
+    let path: f64 = log.rows[from + 1..=to]
+        .iter()
+        .map(|row| arc_m(row.increment_m_rad))
+        .sum();
     [path / span_s, (poses[to][2] - poses[from][2]) / span_s]
 }
 
 /// Signed length of the arc of an increment: the chord is shorter.
 fn arc_m([dx, dy, dtheta]: [f64; 3]) -> f64 {
     let half = dtheta / 2.0;
-    let stretch = if half.abs() > 1e-6 { half / half.sin() } else { 1.0 };
+    let stretch = if half.abs() > 1e-6 {
+        half / half.sin()
+    } else {
+        1.0
+    };
     let sign = if dx < 0.0 { -1.0 } else { 1.0 };
     sign * dx.hypot(dy) * stretch
 }

@@ -47,7 +47,12 @@ impl Event {
         let place = self
             .distance_m
             .map_or(String::new(), |d| format!(" at {d:.1} m"));
-        format!("{:5.1} s  {}: {}{place}", self.from_s, words::reason(&self.action), words::reason(why))
+        format!(
+            "{:5.1} s  {}: {}{place}",
+            self.from_s,
+            words::reason(&self.action),
+            words::reason(why)
+        )
     }
 }
 

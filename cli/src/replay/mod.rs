@@ -41,7 +41,11 @@ pub fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
         judged: &judged,
         events: &events,
         edges: [body.front_m, body.rear_m, body.left_m, body.right_m],
-        title: format!("{}: {:.0} m in shadow", robot.name, drive::length_m(&moments)),
+        title: format!(
+            "{}: {:.0} m in shadow",
+            robot.name,
+            drive::length_m(&moments)
+        ),
     };
     let written = write_pictures(&args.out, &scene)?;
     let json = serde_json::to_vec_pretty(&events)
@@ -84,16 +88,32 @@ fn print_summary(
     let mut counts: BTreeMap<(String, String), usize> = BTreeMap::new();
     for verdict in judged {
         let why = verdict.refusal.as_ref().unwrap_or(&verdict.reason);
-        *counts.entry((verdict.action.clone(), why.clone())).or_default() += 1;
+        *counts
+            .entry((verdict.action.clone(), why.clone()))
+            .or_default() += 1;
     }
     say!("{:>6}  {:<17} why", "ticks", "decision");
     for ((action, why), count) in &counts {
-        say!("{count:>6}  {:<17} {}", words::reason(action), words::reason(why));
+        say!(
+            "{count:>6}  {:<17} {}",
+            words::reason(action),
+            words::reason(why)
+        );
     }
-    say!("\n{:>3}  {:>7}  {:>5}  {:>6}  event", "#", "from", "ticks", "m/s");
+    say!(
+        "\n{:>3}  {:>7}  {:>5}  {:>6}  event",
+        "#",
+        "from",
+        "ticks",
+        "m/s"
+    );
     for (index, event) in events.iter().enumerate() {
-        let point = event.point_m.map_or(String::new(), |[x, y]| format!(", point ({x:.2}, {y:.2}) m"));
-        let distance = event.distance_m.map_or(String::new(), |d| format!(" {d:.2} m away"));
+        let point = event.point_m.map_or(String::new(), |[x, y]| {
+            format!(", point ({x:.2}, {y:.2}) m")
+        });
+        let distance = event
+            .distance_m
+            .map_or(String::new(), |d| format!(" {d:.2} m away"));
         let why = event.refusal.as_ref().unwrap_or(&event.reason);
         say!(
             "{:>3}  {:>5.1} s  {:>5}  {:>6.2}  {}: {}{point}{distance}",
@@ -132,7 +152,11 @@ fn write_pictures(out: &Path, scene: &Scene<'_>) -> Result<Vec<PathBuf>, Failure
         write_file(&path, svg::file(&picture).as_bytes())?;
         written.push(path);
     }
-    let stops = scene.events.iter().enumerate().filter(|(_, event)| event.is_stop());
+    let stops = scene
+        .events
+        .iter()
+        .enumerate()
+        .filter(|(_, event)| event.is_stop());
     for (index, _) in stops.take(CLOSE_UPS) {
         if let Some(picture) = drawing::close_up(scene, index) {
             let name = format!("event_{:02}.png", index + 1);

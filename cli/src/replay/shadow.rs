@@ -50,17 +50,18 @@ pub fn watch(robot: &Robot, log: &Log, moments: &[Moment]) -> Result<Vec<Judged>
     check_fit(robot, log)?;
     let config = shadow_config(&robot.config);
     // The kernel holds its points in place; on the heap it spares the stack of this thread.
-    let mut kernel = Box::new(
-        Shadow::new(config)
-            .map_err(|error| Failure::input(format!("{}: the kernel refuses it: {error:?}", robot.file)))?,
-    );
+    let mut kernel = Box::new(Shadow::new(config).map_err(|error| {
+        Failure::input(format!("{}: the kernel refuses it: {error:?}", robot.file))
+    })?);
     let mut latched = true;
     let mut judged = Vec::with_capacity(moments.len());
     for moment in moments {
-        let beams: Option<Vec<Beam>> = moment
-            .row
-            .and_then(|row| log.rows.get(row))
-            .map(|row| row.ranges_m.iter().map(|range| encoded(robot, *range)).collect());
+        let beams: Option<Vec<Beam>> = moment.row.and_then(|row| log.rows.get(row)).map(|row| {
+            row.ranges_m
+                .iter()
+                .map(|range| encoded(robot, *range))
+                .collect()
+        });
         let (decision, wall_us) = tick(&mut kernel, &config, moment, beams.as_deref(), latched);
         latched = decision.status == StopStatus::Latched;
         judged.push(judge(&kernel, &decision, moment, wall_us, robot));
@@ -151,10 +152,7 @@ fn check_fit(robot: &Robot, log: &Log) -> Result<(), Failure> {
     };
     let header = &log.header;
     if usize::from(scanner.beams) != header.beams {
-        return wrong(format!(
-            "beams = {}, write {}",
-            scanner.beams, header.beams
-        ));
+        return wrong(format!("beams = {}, write {}", scanner.beams, header.beams));
     }
     if (scanner.field_of_view_rad - header.aperture_rad).abs() > 1e-3 {
         let degrees = header.aperture_rad.to_degrees();
@@ -188,10 +186,16 @@ fn judge(
         None => ask_guard(kernel, moment),
     };
     judged.wall_us = wall_us;
-    judged.memory_m = kernel.memory().clouds().last().map_or_else(Vec::new, |points| {
-        let known = points.iter().filter(|p| p.x_mm.unsigned_abs() < 32_000);
-        known.map(|p| in_world(moment.pose, p.x_mm, p.y_mm)).collect()
-    });
+    judged.memory_m = kernel
+        .memory()
+        .clouds()
+        .last()
+        .map_or_else(Vec::new, |points| {
+            let known = points.iter().filter(|p| p.x_mm.unsigned_abs() < 32_000);
+            known
+                .map(|p| in_world(moment.pose, p.x_mm, p.y_mm))
+                .collect()
+        });
     judged
 }
 
@@ -264,7 +268,12 @@ fn ask_guard(kernel: &Shadow, moment: &Moment) -> Judged {
                 curvature: Curvature::ZERO,
             });
         }
-        let verdict = certify(config.tube(), &hull, config.reaction_us(Duration::ZERO), &scene);
+        let verdict = certify(
+            config.tube(),
+            &hull,
+            config.reaction_us(Duration::ZERO),
+            &scene,
+        );
         if verdict.refusal.is_none() {
             return passed(factor_permille);
         }
@@ -305,15 +314,18 @@ fn nearest_to_footprint(kernel: &Shadow, robot: &Robot) -> Option<([f64; 2], boo
         .flatten()
         .map(|p| [f64::from(p.x_mm) / 1e3, f64::from(p.y_mm) / 1e3])
         .map(|[x, y]| {
-            let gap = outside(x, -body.rear_m, body.front_m)
-                .hypot(outside(y, -body.right_m, body.left_m));
+            let gap = outside(x, -body.rear_m, body.front_m).hypot(outside(
+                y,
+                -body.right_m,
+                body.left_m,
+            ));
             (gap, [x, y])
         })
         .min_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, [x, y])| {
-            let inside = outside(x, -body.rear_m - zone.side_m, body.front_m + zone.front_m)
-                .max(outside(y, -body.right_m - zone.side_m, body.left_m + zone.side_m))
-                <= 0.0;
+            let inside = outside(x, -body.rear_m - zone.side_m, body.front_m + zone.front_m).max(
+                outside(y, -body.right_m - zone.side_m, body.left_m + zone.side_m),
+            ) <= 0.0;
             ([x, y], inside)
         })
 }

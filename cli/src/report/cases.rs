@@ -18,19 +18,65 @@ pub fn write(page: &mut String, certificate: &Certificate, suite: &SuiteResult) 
          and without it (the naked twin). Contacts are judged by exact geometry at every dynamics step, by code that \
          shares nothing with the kernel.</p>\n",
     );
+    wall(page, suite);
     legend(page);
     let in_sweep = |case: &CaseResult| suite.groups.iter().any(|group| group.group == case.group);
-    let records = |name: &str| certificate.cases.iter().find(|record| record.name == name);
+    let breaks = |case: &CaseResult| !case.guarded.assumptions_broken.is_empty();
+    let single: Vec<&CaseResult> = suite.cases.iter().filter(|case| !in_sweep(case)).collect();
+    let (breaking, keeping): (Vec<&CaseResult>, Vec<&CaseResult>) =
+        single.into_iter().partition(|case| breaks(case));
+    cards(page, &keeping, certificate);
+    for group in &suite.groups {
+        sweep(page, group, suite, certificate);
+    }
+    if !breaking.is_empty() {
+        page.push_str(
+            "<h2>Runs that break an assumption on purpose</h2><p class=\"soft\">What happens when the world does not \
+             keep to the contract. They are evidence for no claim; a contact here is the price of the broken \
+             assumption, not a failure of the guard.</p>",
+        );
+        cards(page, &breaking, certificate);
+    }
+}
+
+fn cards(page: &mut String, cases: &[&CaseResult], certificate: &Certificate) {
     page.push_str("<div class=\"grid\">");
-    for case in suite.cases.iter().filter(|case| !in_sweep(case)) {
-        if let Some(record) = records(&case.name) {
+    for case in cases {
+        if let Some(record) = certificate
+            .cases
+            .iter()
+            .find(|record| record.name == case.name)
+        {
             card(page, case, record);
         }
     }
     page.push_str("</div>\n");
-    for group in &suite.groups {
-        sweep(page, group, suite, certificate);
+}
+
+/// One small square for each run, to see at a glance how many there are and which failed.
+fn wall(page: &mut String, suite: &SuiteResult) {
+    page.push_str("<div class=\"wall\">");
+    for case in &suite.cases {
+        let class = match (
+            case.judgement.outcome,
+            case.guarded.assumptions_broken.is_empty(),
+        ) {
+            (Outcome::Fail, _) => "failed",
+            (Outcome::Pass, true) => "holds",
+            (Outcome::Pass, false) => "not_checkable",
+        };
+        let name = escape(&case.name);
+        let label = escape(&format!("{}: {}", case.title, words::outcome(case)));
+        let _ = write!(
+            page,
+            "<a class=\"{class}\" href=\"#{}\" title=\"{name} – {label}\" aria-label=\"{name}\"></a>",
+            case_anchor(&case.name)
+        );
     }
+    page.push_str(
+        "</div><p class=\"small soft\">One square for each run: green as expected, amber as expected with an \
+         assumption broken on purpose, red failed.</p>\n",
+    );
 }
 
 fn legend(page: &mut String) {
@@ -51,7 +97,7 @@ fn legend(page: &mut String) {
              d=\"M1 6L25 6\"/></svg>{label}</span>"
         );
     }
-    page.push_str("<span>⊗ contact</span><span>❶ robot came to rest</span></div>\n");
+    page.push_str("<span>⊗ contact</span><span>❶ robot came to rest</span><span>▶ click on a picture to play it</span></div>\n");
 }
 
 fn outcome_chip(outcome: Outcome) -> &'static str {
@@ -62,17 +108,36 @@ fn outcome_chip(outcome: Outcome) -> &'static str {
 }
 
 fn card(page: &mut String, case: &CaseResult, record: &CaseRecord) {
-    let _ = write!(page, "<article class=\"card\" id=\"{}\">", case_anchor(&case.name));
+    let _ = write!(
+        page,
+        "<article class=\"card\" id=\"{}\">",
+        case_anchor(&case.name)
+    );
     if let Some(picture) = drawing::full(case, Subject::Guarded) {
         page.push_str(&svg::element(&picture));
     }
     let _ = write!(
         page,
-        "<div class=\"body\"><div class=\"row\"><h3>{}</h3>{}</div><div class=\"soft small mono\">{}</div>",
+        "<div class=\"body\"><h3>{}</h3><div class=\"row\"><span class=\"soft small mono\">{}</span>",
         escape(&case.title),
-        outcome_chip(case.judgement.outcome),
         escape(&case.name)
     );
+    let mut broken: Vec<&str> = case
+        .guarded
+        .assumptions_broken
+        .iter()
+        .map(|b| b.id.as_str())
+        .collect();
+    broken.dedup();
+    for id in broken {
+        let _ = write!(
+            page,
+            "<span class=\"chip broken\">breaks {} on purpose</span>",
+            escape(id)
+        );
+    }
+    page.push_str(outcome_chip(case.judgement.outcome));
+    page.push_str("</div>");
     facts(page, case);
     stops(page, case);
     failure_or_details(page, case, record);
@@ -81,10 +146,17 @@ fn card(page: &mut String, case: &CaseResult, record: &CaseRecord) {
 
 fn facts(page: &mut String, case: &CaseResult) {
     let run = &case.guarded;
-    let end = if run.reached { "goal after" } else { "ended after" };
+    let end = if run.reached {
+        "goal after"
+    } else {
+        "ended after"
+    };
     let mut facts = vec![(end, format!("{:.1} s", run.time_s))];
     if case.obstacle_speed_mps > 0.0 {
-        facts.push(("obstacles up to", format!("{:.1} m/s", case.obstacle_speed_mps)));
+        facts.push((
+            "obstacles up to",
+            format!("{:.1} m/s", case.obstacle_speed_mps),
+        ));
     }
     facts.push(("contacts while moving", run.moving_contacts().to_string()));
     if let Some(gap) = words::nearest(run) {
@@ -111,15 +183,14 @@ fn stops(page: &mut String, case: &CaseResult) {
     }
     page.push_str("<ol class=\"stops\">");
     for stop in stops.iter().take(SHOWN) {
-        let gap = stop
-            .clearance_m
-            .map_or(String::new(), |gap| format!(", {} left", words::metres(gap)));
+        let gap = stop.clearance_m.map_or(String::new(), |gap| {
+            format!(", {} left", words::metres(gap))
+        });
         let _ = write!(
             page,
-            "<li>{:.1} s: {} ({}){}</li>",
+            "<li>{:.1} s: {}{}</li>",
             stop.t_s,
-            escape(&words::reason(&stop.reason)),
-            escape(&words::reason(&stop.decision)),
+            escape(&words::why_stopped(&stop.decision, &stop.reason)),
             escape(&gap)
         );
     }
@@ -143,7 +214,11 @@ fn failure_or_details(page: &mut String, case: &CaseResult, record: &CaseRecord)
         let _ = write!(page, "<p class=\"small\">{}</p>", escape(sentence));
     }
     if let Some(reason) = &case.naked_reason {
-        let _ = write!(page, "<p class=\"small\">No naked twin: {}</p>", escape(reason));
+        let _ = write!(
+            page,
+            "<p class=\"small\">No naked twin: {}</p>",
+            escape(reason)
+        );
     }
     for broken in &case.guarded.assumptions_broken {
         let (id, what) = (escape(&broken.id), escape(&broken.what));
@@ -162,12 +237,23 @@ fn failure_or_details(page: &mut String, case: &CaseResult, record: &CaseRecord)
             id = escape(&monitor.id)
         );
     }
-    let _ = write!(page, "seed {}</p><pre>{}</pre></details>", case.seed, escape(&record.replay));
+    let _ = write!(
+        page,
+        "seed {}</p><pre>{}</pre></details>",
+        case.seed,
+        escape(&record.replay)
+    );
 }
 
 fn sweep(page: &mut String, group: &GroupResult, suite: &SuiteResult, certificate: &Certificate) {
-    let cases: Vec<&CaseResult> = suite.cases.iter().filter(|c| c.group == group.group).collect();
-    let title = cases.first().map_or(group.group.as_str(), |case| case.title.as_str());
+    let cases: Vec<&CaseResult> = suite
+        .cases
+        .iter()
+        .filter(|c| c.group == group.group)
+        .collect();
+    let title = cases
+        .first()
+        .map_or(group.group.as_str(), |case| case.title.as_str());
     let _ = write!(
         page,
         "<h2 id=\"{}\">{} {}</h2><div class=\"facts\"><span>variants <b>{}</b></span><span>guarded runs that touched \
@@ -189,7 +275,10 @@ fn sweep(page: &mut String, group: &GroupResult, suite: &SuiteResult, certificat
     }
     page.push_str("<div class=\"thumbs\">");
     for case in cases {
-        let record = certificate.cases.iter().find(|record| record.name == case.name);
+        let record = certificate
+            .cases
+            .iter()
+            .find(|record| record.name == case.name);
         thumb(page, case, record);
     }
     page.push_str("</div>\n");
@@ -197,7 +286,11 @@ fn sweep(page: &mut String, group: &GroupResult, suite: &SuiteResult, certificat
 
 fn thumb(page: &mut String, case: &CaseResult, record: Option<&CaseRecord>) {
     let variant = case.name.rsplit('/').next().unwrap_or(&case.name);
-    let _ = write!(page, "<article class=\"card\" id=\"{}\">", case_anchor(&case.name));
+    let _ = write!(
+        page,
+        "<article class=\"card\" id=\"{}\">",
+        case_anchor(&case.name)
+    );
     if let Some(picture) = drawing::thumbnail(case, THUMB) {
         page.push_str(&svg::element(&picture));
     }
@@ -206,7 +299,11 @@ fn thumb(page: &mut String, case: &CaseResult, record: Option<&CaseRecord>) {
         page,
         "<div class=\"body\"><b>{}</b> {}<div class=\"soft\">{}</div>",
         escape(variant),
-        if failed { outcome_chip(Outcome::Fail) } else { "" },
+        if failed {
+            outcome_chip(Outcome::Fail)
+        } else {
+            ""
+        },
         escape(&words::outcome(case))
     );
     if let Some(record) = record.filter(|_| failed) {

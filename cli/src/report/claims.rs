@@ -2,7 +2,7 @@
 
 use super::words;
 use crate::certificate::AssumptionRecord;
-use crate::claims::{Claim, EvidenceKind, Status};
+use crate::claims::{Claim, EvidenceKind, Status, first_of_each_case};
 use crate::explain;
 use crate::junit;
 use crate::picture::svg::escape;
@@ -33,15 +33,13 @@ pub fn case_anchor(name: &str) -> String {
 pub fn write(page: &mut String, claims: &[Claim]) {
     page.push_str(
         "<h2 id=\"claims\">Claims</h2>\n<p class=\"soft\">Each claim is worded as strongly as its evidence and no \
-         stronger: <i>tested</i> means that no run spoke against it, not that none could.</p>\n<div class=\"claims\">",
+         stronger: <i>tested</i> means that no run spoke against it, not that none could.</p>\n",
     );
-    let order = [
-        Status::Failed,
-        Status::NotCheckable,
-        Status::Holds,
-        Status::NotClaimed,
-    ];
-    for status in order {
+    for claim in claims.iter().filter(|claim| claim.status == Status::Failed) {
+        card(page, claim);
+    }
+    page.push_str("<div class=\"claims\">");
+    for status in [Status::NotCheckable, Status::Holds, Status::NotClaimed] {
         for claim in claims.iter().filter(|claim| claim.status == status) {
             card(page, claim);
         }
@@ -53,9 +51,14 @@ fn card(page: &mut String, claim: &Claim) {
     let class = class(claim.status);
     let _ = write!(
         page,
-        "<div class=\"card claim {class}\" id=\"claim-{id}\"><div class=\"body\"><div class=\"row\"><h3 class=\"mono\">\
+        "<div class=\"card claim {class}{wide}\" id=\"claim-{id}\"><div class=\"body\"><div class=\"row\"><h3 class=\"mono\">\
          {id}</h3><span class=\"chip {class}\">{status}</span></div><p>{statement}</p><p class=\"small soft\">{evidence}",
         id = escape(&claim.id),
+        wide = if claim.status == Status::Failed {
+            " wide"
+        } else {
+            ""
+        },
         status = claim.status.words(),
         statement = escape(&claim.statement),
         evidence = escape(&claim.evidence.words),
@@ -69,12 +72,20 @@ fn card(page: &mut String, claim: &Claim) {
         );
     }
     if requirements().iter().any(|r| r.family.prefix() == claim.id) {
-        let _ = write!(page, " · <a href=\"#req-{}\">requirements</a>", escape(&claim.id));
+        let _ = write!(
+            page,
+            " · <a href=\"#req-{}\">requirements</a>",
+            escape(&claim.id)
+        );
     }
     page.push_str("</p>");
     counterexamples(page, claim);
     if !claim.cases.is_empty() {
-        let _ = write!(page, "<details><summary>{}</summary>", words::count(claim.cases.len(), "run"));
+        let _ = write!(
+            page,
+            "<details><summary>{}</summary>",
+            words::count(claim.cases.len(), "run")
+        );
         for name in &claim.cases {
             let (anchor, name) = (case_anchor(name), escape(name));
             let _ = write!(page, "<a class=\"small\" href=\"#{anchor}\">{name}</a> ");
@@ -85,22 +96,41 @@ fn card(page: &mut String, claim: &Claim) {
 }
 
 fn counterexamples(page: &mut String, claim: &Claim) {
-    const SHOWN: usize = 5;
-    for found in claim.counterexamples.iter().take(SHOWN) {
+    const SHOWN: usize = 12;
+    let told = first_of_each_case(&claim.counterexamples);
+    if told.is_empty() {
+        return;
+    }
+    page.push_str("<div class=\"examples\">");
+    for (found, again) in told.iter().take(SHOWN) {
         let when = junit::when(found);
         let when = when.strip_prefix(&found.case).unwrap_or_default();
+        let again = match again {
+            0 => String::new(),
+            more => format!(" (and {more} more times)"),
+        };
+        // A failing check of the contract has its own row; everything else is a run.
+        let anchor = if found.case.starts_with("C-") {
+            found.case.clone()
+        } else {
+            case_anchor(&found.case)
+        };
         let _ = write!(
             page,
-            "<p class=\"bad small\"><a href=\"#{}\">{}</a>{when}: {}</p><pre>{}</pre>",
-            case_anchor(&found.case),
+            "<div><p class=\"bad small\"><a href=\"#{anchor}\">{}</a>{when}: {}{again}</p><pre>{}</pre></div>",
             escape(&found.case),
             escape(&found.what),
             escape(&found.replay)
         );
     }
-    let more = claim.counterexamples.len().saturating_sub(SHOWN);
+    page.push_str("</div>");
+    let more = told.len().saturating_sub(SHOWN);
     if more > 0 {
-        let _ = write!(page, "<p class=\"small soft\">and {more} more in certificate.json</p>");
+        let _ = write!(
+            page,
+            "<p class=\"small soft\">and {} more; see certificate.json</p>",
+            words::count(more, "run")
+        );
     }
 }
 
@@ -184,7 +214,11 @@ fn paragraphs(text: &str) -> String {
                 .split('`')
                 .map(|part| {
                     let part = escape(&part.replace('\n', " "));
-                    let out = if code { format!("<code>{part}</code>") } else { part };
+                    let out = if code {
+                        format!("<code>{part}</code>")
+                    } else {
+                        part
+                    };
                     code = !code;
                     out
                 })
@@ -225,6 +259,9 @@ mod tests {
 
     #[test]
     fn specification_text_keeps_its_code() {
-        assert_eq!(paragraphs("a `b<c`\nd\n\ne"), "<p>a <code>b&lt;c</code> d</p><p>e</p>");
+        assert_eq!(
+            paragraphs("a `b<c`\nd\n\ne"),
+            "<p>a <code>b&lt;c</code> d</p><p>e</p>"
+        );
     }
 }

@@ -93,11 +93,10 @@ fn speeds(page: &mut String, rows: &[SpeedRow], names: &[&str]) {
     for row in rows {
         let _ = write!(
             page,
-            "<tr><td>{} m/s</td><td><b>{} m/s</b></td><td>{}{}<div class=\"soft small\">{}</div></td></tr>",
+            "<tr><td>{} m/s</td><td><b>{} m/s</b></td><td>{}<div class=\"soft small\">{}</div></td></tr>",
             short(row.obstacle_speed_mps),
             short(row.top_speed_mps),
             escape(row.decides),
-            if row.limited_by_file { " (limit of the file)" } else { "" },
             escape(&row.sentence)
         );
     }
@@ -110,7 +109,9 @@ fn gaps(page: &mut String, rows: &[GapRow], names: &[&str]) {
         .iter()
         .map(|row| Bar {
             label: format!("{} m/s", short(row.obstacle_speed_mps)),
-            result: row.gap_m.map_or_else(|| "none".to_owned(), |gap| format!("{} m", short(gap))),
+            result: row
+                .gap_m
+                .map_or_else(|| "none".to_owned(), |gap| format!("{} m", short(gap))),
             terms: &row.terms,
             limit_m: None,
         })
@@ -122,7 +123,9 @@ fn gaps(page: &mut String, rows: &[GapRow], names: &[&str]) {
         "<div class=\"body\"><table><tr><th>obstacles up to</th><th>gap</th><th>at top speed</th><th>decides</th></tr>",
     );
     for row in rows {
-        let gap = |gap: Option<f64>| gap.map_or_else(|| "none".to_owned(), |gap| format!("{} m", short(gap)));
+        let gap = |gap: Option<f64>| {
+            gap.map_or_else(|| "none".to_owned(), |gap| format!("{} m", short(gap)))
+        };
         let _ = write!(
             page,
             "<tr><td>{} m/s</td><td><b>{}</b> at {} m/s</td><td>{}</td><td>{}<div class=\"soft small\">{}</div></td></tr>",
@@ -169,18 +172,31 @@ fn stacked([heading, axis]: [&str; 2], bars: &[Bar<'_>], names: &[&str]) -> Pict
     picture.rect([0.0, 0.0], [WIDTH, picture.height], Style::Paper);
     picture.text([12.0, 22.0], Anchor::Start, Style::LabelStrong, heading);
     picture.text([12.0, 38.0], Anchor::Start, Style::Label, axis);
-    let sum = |bar: &Bar<'_>| bar.terms.iter().map(|term| term.value_m.max(0.0)).sum::<f64>();
+    let sum = |bar: &Bar<'_>| {
+        bar.terms
+            .iter()
+            .map(|term| term.value_m.max(0.0))
+            .sum::<f64>()
+    };
     let longest = bars
         .iter()
         .map(|bar| sum(bar).max(bar.limit_m.unwrap_or(0.0)))
         .fold(1e-3, f64::max);
     for (index, bar) in bars.iter().enumerate() {
         let y = top + 34.0 * index as f64;
-        picture.text([LEFT - 8.0, y + 18.0], Anchor::End, Style::Label, bar.label.clone());
+        picture.text(
+            [LEFT - 8.0, y + 18.0],
+            Anchor::End,
+            Style::Label,
+            bar.label.clone(),
+        );
         let mut x = LEFT;
         for term in bar.terms {
             let width = INNER * term.value_m.max(0.0) / longest;
-            let place = names.iter().position(|name| *name == term.name).unwrap_or(0);
+            let place = names
+                .iter()
+                .position(|name| *name == term.name)
+                .unwrap_or(0);
             let style = TERM_STYLES[place % TERM_STYLES.len()];
             if width > 0.2 {
                 picture.rect([x, y + 4.0], [width, 20.0], style);
@@ -188,7 +204,12 @@ fn stacked([heading, axis]: [&str; 2], bars: &[Bar<'_>], names: &[&str]) -> Pict
             x += width;
         }
         let end = (x + 8.0).min(WIDTH - 74.0);
-        picture.text([end, y + 19.0], Anchor::Start, Style::LabelStrong, bar.result.clone());
+        picture.text(
+            [end, y + 19.0],
+            Anchor::Start,
+            Style::LabelStrong,
+            bar.result.clone(),
+        );
         if let Some(limit_m) = bar.limit_m {
             let at = LEFT + INNER * limit_m / longest;
             picture.line(vec![[at, y], [at, y + 28.0]], Style::Limit);
@@ -202,7 +223,11 @@ fn draw_legend(picture: &mut Picture, names: &[&str], top: f64) {
     for (index, name) in names.iter().enumerate() {
         let x = 14.0 + 200.0 * (index % 3) as f64;
         let y = top + 17.0 * (index / 3) as f64;
-        picture.rect([x, y - 9.0], [11.0, 11.0], TERM_STYLES[index % TERM_STYLES.len()]);
+        picture.rect(
+            [x, y - 9.0],
+            [11.0, 11.0],
+            TERM_STYLES[index % TERM_STYLES.len()],
+        );
         picture.text([x + 16.0, y], Anchor::Start, Style::Label, *name);
     }
 }
@@ -244,8 +269,20 @@ mod tests {
     #[test]
     fn terms_keep_their_colour_from_bar_to_bar() {
         let terms = [
-            vec![Term { name: "sensor", value_m: 0.1 }, Term { name: "spread", value_m: 0.1 }],
-            vec![Term { name: "spread", value_m: 0.1 }],
+            vec![
+                Term {
+                    name: "sensor",
+                    value_m: 0.1,
+                },
+                Term {
+                    name: "spread",
+                    value_m: 0.1,
+                },
+            ],
+            vec![Term {
+                name: "spread",
+                value_m: 0.1,
+            }],
         ];
         let bars: Vec<Bar<'_>> = terms
             .iter()

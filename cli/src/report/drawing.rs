@@ -1,11 +1,13 @@
 //! Draws a case: map, swept footprints, path by verdict, stops, the naked twin, and two curves over time.
 
+use super::actors;
+use super::claims::case_anchor as anchor;
 use super::words;
 use crate::picture::plot::{self, Plot};
 use crate::picture::view::{Pose, View, bounds, outline, round_step, transform};
 use crate::picture::{Anchor, Picture, Style, simplify};
 use haltline_scenarios::result::{
-    BodyRecord, CaseResult, FootprintRecord, PoseRecord, RunResult, Sample, ShapeRecord,
+    BodyRecord, CaseResult, FootprintRecord, PoseRecord, RunResult, Sample, ShapeRecord, Stop,
 };
 
 /// Width of a full drawing, pixels.
@@ -33,7 +35,9 @@ pub fn full(case: &CaseResult, subject: Subject) -> Option<Picture> {
     let title = format!("{}: {}", case.name, words::outcome(case));
     let mut picture = Picture::new(WIDTH, map_height + PLOT_HEIGHT + 8.0, title);
     picture.rect([0.0, 0.0], [WIDTH, picture.height], Style::Paper);
+    picture.id = Some(format!("play-{}", anchor(&case.name)));
     draw_map(&mut picture, case, subject, run, &view, true);
+    actors::add(&mut picture, case, subject, run, &view);
     let below = [0.0, map_height];
     let rest = [WIDTH, picture.height - map_height];
     picture.rect(below, rest, Style::Paper);
@@ -62,11 +66,11 @@ fn subject_run(case: &CaseResult, subject: Subject) -> Option<&RunResult> {
     }
 }
 
-fn pose(record: &PoseRecord) -> Pose {
+pub fn pose(record: &PoseRecord) -> Pose {
     [record.x_m, record.y_m, record.theta_rad]
 }
 
-fn body_outline(record: &FootprintRecord, at: Pose) -> Vec<[f64; 2]> {
+pub fn body_outline(record: &FootprintRecord, at: Pose) -> Vec<[f64; 2]> {
     outline(
         at,
         [record.front_m, record.rear_m, record.left_m, record.right_m],
@@ -80,7 +84,7 @@ fn map_view(case: &CaseResult, subject: Subject, size: [f64; 2]) -> Option<View>
     let course = run
         .samples
         .iter()
-        .chain(twin.into_iter().flat_map(|naked| &naked.samples))
+        .chain(twin.into_iter().flat_map(until_contact))
         .flat_map(|sample| body_outline(&case.footprint, pose(&sample.pose)));
     let (low, high) = bounds(course.chain(run.world.goal_m))?;
     let near = |p: &[f64; 2]| (0..2).all(|i| p[i] > low[i] - 2.5 && p[i] < high[i] + 2.5);
@@ -105,6 +109,18 @@ fn map_view(case: &CaseResult, subject: Subject, size: [f64; 2]) -> Option<View>
     low[axis] -= grow / 2.0;
     high[axis] += grow / 2.0;
     Some(View::fit(low, high, [0.0, 0.0], size))
+}
+
+/// The course of a naked twin until it touches; what comes after shows nothing more.
+fn until_contact(naked: &RunResult) -> impl Iterator<Item = &Sample> {
+    let end_s = naked
+        .contacts
+        .first()
+        .map_or(f64::INFINITY, |contact| contact.t_s);
+    naked
+        .samples
+        .iter()
+        .take_while(move |sample| sample.t_s <= end_s)
 }
 
 fn extent(shape: &ShapeRecord) -> f64 {
@@ -137,7 +153,7 @@ fn draw_map(
     draw_path(picture, run, view);
     draw_ends(picture, run, &case.footprint, view);
     if detailed {
-        draw_stops(picture, run, view);
+        draw_stops(picture, run, &case.footprint, view);
         draw_scale(picture, view);
     }
     for contact in &run.contacts {
@@ -159,13 +175,14 @@ fn moment_of_interest(run: &RunResult) -> f64 {
 }
 
 fn draw_grid(picture: &mut Picture, view: &View) {
+    let step = round_step(view.max_m[0] - view.min_m[0], 14.0).max(1.0);
     for axis in 0..2 {
-        let mut at = view.min_m[axis].ceil();
+        let mut at = (view.min_m[axis] / step).ceil() * step;
         while at <= view.max_m[axis] {
             let (mut from, mut to) = (view.min_m, view.max_m);
             (from[axis], to[axis]) = (at, at);
             picture.line(view.all(&[from, to]), Style::Grid);
-            at += 1.0;
+            at += step;
         }
     }
 }
@@ -189,7 +206,7 @@ fn draw_goal(picture: &mut Picture, run: &RunResult, view: &View) {
     picture.circle(view.at(goal), radius * view.scale, Style::Goal);
 }
 
-fn shape_outline(shape: &ShapeRecord, at: Pose) -> Vec<[f64; 2]> {
+pub fn shape_outline(shape: &ShapeRecord, at: Pose) -> Vec<[f64; 2]> {
     match shape {
         ShapeRecord::Segment { from_m, to_m } => {
             let (dx, dy) = (to_m[0] - from_m[0], to_m[1] - from_m[1]);
@@ -258,9 +275,7 @@ fn draw_body(picture: &mut Picture, body: &BodyRecord, when_s: f64, view: &View)
 }
 
 fn draw_naked(picture: &mut Picture, naked: &RunResult, footprint: &FootprintRecord, view: &View) {
-    let path: Vec<_> = naked
-        .samples
-        .iter()
+    let path: Vec<_> = until_contact(naked)
         .map(|s| view.at([s.pose.x_m, s.pose.y_m]))
         .collect();
     picture.line(simplify(&path, 0.4), Style::PathNaked);
@@ -291,12 +306,12 @@ fn draw_cross(picture: &mut Picture, [x, y]: [f64; 2]) {
 
 /// Footprints so close together that their union is the swept area to the eye.
 fn draw_swept(picture: &mut Picture, run: &RunResult, footprint: &FootprintRecord, view: &View) {
-    let step_m = (footprint.front_m + footprint.rear_m) / 3.0;
+    let step_m = (footprint.front_m + footprint.rear_m) / 4.0;
     let mut last: Option<Pose> = None;
     for sample in &run.samples {
         let at = pose(&sample.pose);
         let far = last.is_none_or(|from| {
-            (at[0] - from[0]).hypot(at[1] - from[1]) > step_m || (at[2] - from[2]).abs() > 0.2
+            (at[0] - from[0]).hypot(at[1] - from[1]) > step_m || (at[2] - from[2]).abs() > 0.3
         });
         if far {
             picture.polygon(view.all(&body_outline(footprint, at)), Style::Swept);
@@ -339,27 +354,48 @@ fn draw_ends(picture: &mut Picture, run: &RunResult, footprint: &FootprintRecord
         let tip = transform(at, [footprint.front_m, 0.0]);
         picture.line(view.all(&[nose, tip]), style);
     }
-    for stop in &run.stops {
+    for (_, stop) in places(&run.stops) {
         let corners = body_outline(footprint, pose(&stop.pose));
         picture.polygon(view.all(&corners), Style::FootprintStop);
     }
 }
 
-fn draw_stops(picture: &mut Picture, run: &RunResult, view: &View) {
-    for (index, stop) in run.stops.iter().enumerate() {
+/// Stops at different places with their numbers; later ones at the same place are left out.
+fn places(stops: &[Stop]) -> Vec<(usize, &Stop)> {
+    let mut places: Vec<(usize, &Stop)> = Vec::new();
+    for (index, stop) in stops.iter().enumerate() {
+        let known = places.iter().any(|(_, known)| {
+            (known.pose.x_m - stop.pose.x_m).hypot(known.pose.y_m - stop.pose.y_m) < 0.25
+                && (known.pose.theta_rad - stop.pose.theta_rad).abs() < 0.35
+        });
+        if !known {
+            places.push((index + 1, stop));
+        }
+    }
+    places
+}
+
+fn draw_stops(picture: &mut Picture, run: &RunResult, footprint: &FootprintRecord, view: &View) {
+    for (count, (number, stop)) in places(&run.stops).into_iter().enumerate() {
         let [x, y] = view.at([stop.pose.x_m, stop.pose.y_m]);
         picture.circle([x, y], 8.0, Style::StopMark);
-        let number = (index + 1).to_string();
-        picture.text([x, y + 4.0], Anchor::Middle, Style::MarkText, number);
-        if index < 3 {
-            let text = format!("{} at {:.1} s", words::reason(&stop.reason), stop.t_s);
-            let (x, anchor) = if x > WIDTH * 0.7 {
-                (x - 12.0, Anchor::End)
-            } else {
-                (x + 12.0, Anchor::Start)
-            };
-            let y = y - 10.0 - 13.0 * index as f64;
-            picture.text([x, y], anchor, Style::Label, text);
+        picture.text(
+            [x, y + 4.0],
+            Anchor::Middle,
+            Style::MarkText,
+            number.to_string(),
+        );
+        if count < 3 {
+            let text = format!(
+                "{} at {:.1} s",
+                words::why_stopped(&stop.decision, &stop.reason),
+                stop.t_s
+            );
+            // Above the footprint, inside the picture.
+            let corners = view.all(&body_outline(footprint, pose(&stop.pose)));
+            let top = corners.iter().map(|corner| corner[1]).fold(y, f64::min);
+            let at = [x.clamp(70.0, WIDTH - 70.0), (top - 6.0).max(12.0)];
+            picture.text(at, Anchor::Middle, Style::Label, text);
         }
     }
 }

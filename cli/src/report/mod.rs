@@ -1,5 +1,6 @@
 //! The report: everything the certificate says, drawn.
 
+mod actors;
 pub mod cases;
 pub mod claims;
 pub mod contract;

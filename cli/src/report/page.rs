@@ -55,12 +55,18 @@ fn banner(page: &mut String, certificate: &Certificate, suite: &SuiteResult) {
         ),
     };
     let runs = suite.cases.len();
-    let touched: usize = suite.cases.iter().map(|c| c.guarded.moving_contacts()).sum();
+    // Runs that break an assumption on purpose say nothing about the claim.
+    let kept = || {
+        suite
+            .cases
+            .iter()
+            .filter(|c| c.guarded.assumptions_broken.is_empty())
+    };
+    let broken = runs - kept().count();
+    let touched: usize = kept().map(|c| c.guarded.moving_contacts()).sum();
     let naked = suite.cases.iter().filter_map(|c| c.naked.as_ref());
     let hurt = naked.clone().filter(|n| !n.contacts.is_empty()).count();
-    let nearest = suite
-        .cases
-        .iter()
+    let nearest = kept()
         .filter_map(|c| c.guarded.min_clearance_moving_m)
         .min_by(f64::total_cmp)
         .map_or_else(|| "–".to_owned(), words::metres);
@@ -79,10 +85,17 @@ fn banner(page: &mut String, certificate: &Certificate, suite: &SuiteResult) {
         (touched.to_string(), "contacts while moving"),
         (format!("{hurt} / {}", naked.count()), "naked twins touched"),
         (nearest, "nearest while moving"),
+        (
+            broken.to_string(),
+            "runs that break an assumption on purpose (apart)",
+        ),
         (verdict.not_claimed.to_string(), "parts not claimed yet"),
     ];
     for (value, label) in tiles {
-        let _ = write!(page, "<div class=\"tile\"><b>{value}</b><span>{label}</span></div>");
+        let _ = write!(
+            page,
+            "<div class=\"tile\"><b>{value}</b><span>{label}</span></div>"
+        );
     }
     page.push_str("</div></div>");
 }
@@ -100,7 +113,10 @@ fn reproduce(page: &mut String, certificate: &Certificate) {
     page.push_str("<div class=\"scroll\"><table><tr><th>input</th><th>SHA-256</th></tr>");
     let mut row = |what: &str, hash: &str| {
         let (what, hash) = (escape(what), escape(hash));
-        let _ = write!(page, "<tr><td>{what}</td><td class=\"mono\">{hash}</td></tr>");
+        let _ = write!(
+            page,
+            "<tr><td>{what}</td><td class=\"mono\">{hash}</td></tr>"
+        );
     };
     row(
         &format!("kernel, {} files", certificate.kernel.files.len()),

@@ -40,12 +40,22 @@ pub fn plan(robot: &Robot) -> Picture {
     let tip = view.at([body.front_m, 0.0]);
     let back = 12.0;
     picture.polygon(
-        vec![tip, [tip[0] - back, tip[1] - back / 2.0], [tip[0] - back, tip[1] + back / 2.0]],
+        vec![
+            tip,
+            [tip[0] - back, tip[1] - back / 2.0],
+            [tip[0] - back, tip[1] + back / 2.0],
+        ],
         Style::StopMark,
     );
     let centre = view.at([0.0, 0.0]);
-    picture.line(vec![[centre[0] - 7.0, centre[1]], [centre[0] + 7.0, centre[1]]], Style::Start);
-    picture.line(vec![[centre[0], centre[1] - 7.0], [centre[0], centre[1] + 7.0]], Style::Start);
+    picture.line(
+        vec![[centre[0] - 7.0, centre[1]], [centre[0] + 7.0, centre[1]]],
+        Style::Start,
+    );
+    picture.line(
+        vec![[centre[0], centre[1] - 7.0], [centre[0], centre[1] + 7.0]],
+        Style::Start,
+    );
     for scanner in &robot.values.scanners {
         picture.circle(view.at([scanner.x_m, scanner.y_m]), 5.0, Style::Memory);
     }
@@ -88,12 +98,16 @@ fn draw_words(picture: &mut Picture, robot: &Robot, view: &View) {
         picture.text([14.0, y], Anchor::Start, Style::Label, text);
         y -= 15.0;
     }
-    let note = "blue: footprint · red dashes: critical zone · green: watched · cross: rotation centre";
+    let note =
+        "blue: footprint · red dashes: critical zone · green: watched · cross: rotation centre";
     picture.text([14.0, SIZE[1] - 30.0], Anchor::Start, Style::Label, note);
     let bar = round_step(view.max_m[0] - view.min_m[0], 8.0);
     let (x, y) = (14.0, SIZE[1] - 10.0);
     let right = x + bar * view.scale;
-    picture.line(vec![[x, y - 5.0], [x, y], [right, y], [right, y - 5.0]], Style::Start);
+    picture.line(
+        vec![[x, y - 5.0], [x, y], [right, y], [right, y - 5.0]],
+        Style::Start,
+    );
     let text = format!("{} m", number(bar, bar));
     picture.text([x + 4.0, y - 4.0], Anchor::Start, Style::Label, text);
 }

@@ -44,8 +44,18 @@ fn world() -> WorldRecord {
         bodies: vec![
             body("left wall", wall(1.6), here(at(0.0, 0.0)), false),
             body("right wall", wall(-1.6), here(at(0.0, 0.0)), true),
-            body("box", ShapeRecord::Box { size_m: [0.5, 0.4] }, here(at(5.8, -0.9)), false),
-            body("<ball>", ShapeRecord::Circle { radius_m: 0.25 }, crossing, false),
+            body(
+                "box",
+                ShapeRecord::Box { size_m: [0.5, 0.4] },
+                here(at(5.8, -0.9)),
+                false,
+            ),
+            body(
+                "<ball>",
+                ShapeRecord::Circle { radius_m: 0.25 },
+                crossing,
+                false,
+            ),
         ],
         goal_m: Some([7.0, 0.3]),
         goal_radius_m: Some(0.25),
@@ -57,7 +67,9 @@ fn run(guarded: bool, stop_at: f64) -> RunResult {
     let samples: Vec<Sample> = (0..80)
         .map(|i| {
             let t_s = f64::from(i) * 0.1;
-            let v = (1.2 * t_s).min(1.2).min((2.0 * (stop_at - x)).max(0.0).sqrt());
+            let v = (1.2 * t_s)
+                .min(1.2)
+                .min((2.0 * (stop_at - x)).max(0.0).sqrt());
             x += v * 0.1;
             Sample {
                 t_s,
@@ -211,7 +223,9 @@ fn the_page_is_the_same_twice_and_stands_alone() {
     let certificate = certificate(&robot, &suite);
     let html = page::write(&certificate, &robot, &suite);
     assert_eq!(html, page::write(&certificate, &robot, &suite));
-    for outside in ["http://", "https://", "<script", "<link", "src=", "@import", "url("] {
+    for outside in [
+        "http://", "https://", "<script", "<link", "src=", "@import", "url(",
+    ] {
         assert!(!html.contains(outside), "the page refers to `{outside}`");
     }
     assert!(!html.contains("<ball>"), "names must be escaped");
@@ -228,7 +242,10 @@ fn every_link_in_the_page_has_its_target() {
     let mut targets = 0;
     for link in html.split("href=\"#").skip(1) {
         let anchor = link.split('"').next().unwrap_or_default();
-        assert!(html.contains(&format!("id=\"{anchor}\"")), "no target for #{anchor}");
+        assert!(
+            html.contains(&format!("id=\"{anchor}\"")),
+            "no target for #{anchor}"
+        );
         targets += 1;
     }
     assert!(targets > 20, "only {targets} links");
@@ -239,14 +256,25 @@ fn a_failed_claim_names_time_tick_and_command() {
     let robot = Robot::embedded("seekur_jr").expect("robot");
     let mut suite = suite();
     suite.cases[0].guarded.monitors[2].violation_count = 1;
-    suite.cases[0].guarded.monitors[2].violations.push(Violation {
-        t_s: 1.2,
-        what: "a point in the zone, no stop".into(),
-    });
+    suite.cases[0].guarded.monitors[2]
+        .violations
+        .push(Violation {
+            t_s: 1.2,
+            what: "a point in the zone, no stop".into(),
+        });
     let certificate = certificate(&robot, &suite);
-    assert!(certificate.claims.iter().any(|claim| claim.status == Status::Failed));
+    assert!(
+        certificate
+            .claims
+            .iter()
+            .any(|claim| claim.status == Status::Failed)
+    );
     let html = page::write(&certificate, &robot, &suite);
-    for part in ["at 1.200 s (tick 30)", "haltline run scenarios/files/ball.toml", "1 claim failed"] {
+    for part in [
+        "at 1.200 s (tick 30)",
+        "haltline run scenarios/files/ball.toml",
+        "1 claim failed",
+    ] {
         assert!(html.contains(part), "the page lacks `{part}`");
     }
     let junit = crate::junit::write(&certificate).expect("junit");

@@ -22,6 +22,18 @@ pub fn reason(word: &str) -> String {
     snake(word).replace('_', " ")
 }
 
+/// Why the robot came to rest, as people say it.
+#[must_use]
+pub fn why_stopped(decision: &str, why: &str) -> String {
+    match (snake(decision).as_str(), snake(why).as_str()) {
+        ("pass" | "naked", "none") => "as commanded".to_owned(),
+        ("protective_stop" | "emergency_stop", _) => {
+            format!("{} ({})", reason(why), reason(decision))
+        }
+        _ => reason(why),
+    }
+}
+
 /// How the path looks under a decision.
 #[must_use]
 pub fn path_style(decision: &str) -> Style {
@@ -88,6 +100,7 @@ mod tests {
     fn names_of_the_kernel_read_the_same_in_either_case() {
         assert_eq!(reason("CriticalZone"), "critical zone");
         assert_eq!(reason("critical_zone"), "critical zone");
+        assert_eq!(why_stopped("Pass", "None"), "as commanded");
         assert_eq!(path_style("ProtectiveStop"), Style::PathStop);
     }
 
