@@ -77,11 +77,7 @@ pub fn first_touch(
         };
         previous = Some(point);
         let extra = point.extra_mm.max(start.extra_mm);
-        if !meets_bounds(
-            tube.bounds.grown(i32::from(extra)),
-            start.point(),
-            point.point(),
-        ) {
+        if !meets_bounds(&tube.bounds, i32::from(extra), start.point(), point.point()) {
             continue;
         }
         if let Some(sample) = touched_sample(tube, footprint, start, point, extra, excuse) {
@@ -98,13 +94,15 @@ pub fn first_touch(
     None
 }
 
-/// Whether the bounding box of two points meets `bounds`.
+/// Whether the bounding box of two points, grown by `extra`, meets `bounds`.
+///
+/// Points are `i16`, `extra` is `u16` and the bounds are a few metres: nothing wraps.
 #[inline]
-fn meets_bounds(bounds: Rect, a: PointMm, b: PointMm) -> bool {
-    a.x.min(b.x) <= bounds.front
-        && a.x.max(b.x) >= bounds.rear.saturating_neg()
-        && a.y.min(b.y) <= bounds.left
-        && a.y.max(b.y) >= bounds.right.saturating_neg()
+fn meets_bounds(bounds: &Rect, extra: i32, a: PointMm, b: PointMm) -> bool {
+    a.x.min(b.x).wrapping_sub(extra) <= bounds.front
+        && a.x.max(b.x).wrapping_add(extra) >= bounds.rear.wrapping_neg()
+        && a.y.min(b.y).wrapping_sub(extra) <= bounds.left
+        && a.y.max(b.y).wrapping_add(extra) >= bounds.right.wrapping_neg()
 }
 
 fn touched_sample<'t>(

@@ -207,7 +207,13 @@ impl Tube {
         };
         let mut path = 0_u64;
         for _ in 0..=steps {
-            self.push(parameters, &walk, path, plan.latest_at(add(path, step)))?;
+            // Only what moves needs the time of arrival.
+            let latest = if parameters.obstacle_speed == 0 {
+                0
+            } else {
+                plan.latest_at(add(path, step))
+            };
+            self.push(parameters, &walk, path, latest)?;
             walk.step();
             path = add(path, step);
         }
