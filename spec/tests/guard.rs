@@ -4,7 +4,10 @@
 
 mod common;
 
-use common::{Episode, Lie, Report, Style, check, episodes, run};
+use common::check;
+use common::episode::{Episode, Lie, Style, episodes};
+use common::report::Report;
+use common::run::run;
 use proptest::prelude::*;
 use std::cell::RefCell;
 

@@ -56,6 +56,22 @@ pub enum Lie {
     JointRamps,
     /// The robot is smaller than it is.
     Footprint,
+    /// Scans may be ten times as old.
+    ScanAge,
+    /// Odometry may be five times as old.
+    OdometryAge,
+    /// Commands may be ten times as old.
+    CommandAge,
+    /// Ticks may be a second late.
+    Jitter,
+    /// Any part of the beams may be invalid.
+    InvalidFraction,
+    /// Any run of beams may be invalid.
+    InvalidGap,
+    /// Whatever moves slowly rests, at once.
+    Rest,
+    /// A hazard need not be gone for any time.
+    Clear,
 }
 
 /// Everything that is drawn for one run.
@@ -389,6 +405,24 @@ impl Episode {
                 }
             }
             Lie::JointRamps => config.limits.ramps = Ramps::Together,
+            Lie::ScanAge => config.timing.scan_age_max = ms(10 * self.scan_age_ms()),
+            Lie::OdometryAge => config.timing.odometry_age_max = ms(300),
+            Lie::CommandAge => config.timing.command_age_max = ms(2000),
+            Lie::Jitter => config.timing.jitter = ms(1000),
+            Lie::InvalidFraction | Lie::InvalidGap => {
+                for scanner in config.scanners.iter_mut().flatten() {
+                    if self.lie == Lie::InvalidFraction {
+                        scanner.invalid_max = convert::ratio(1.0, Round::Up).unwrap();
+                    } else {
+                        scanner.invalid_gap_max = u32::MAX;
+                    }
+                }
+            }
+            Lie::Rest => {
+                config.timing.rest = Duration::ZERO;
+                config.tolerances.rest_speed = convert::speed(0.3, Round::Up).unwrap();
+            }
+            Lie::Clear => config.timing.clear = Duration::ZERO,
             Lie::Footprint => {
                 config.footprint.front = up_um(self.edges_m[0] - 0.05);
                 config.footprint.left = up_um(self.edges_m[2] - 0.05);

@@ -4,16 +4,16 @@
 
 pub mod claim;
 pub mod episode;
+pub mod faults;
+pub mod monitor;
 pub mod pilot;
 pub mod report;
 pub mod rules;
 pub mod run;
+pub mod tamper;
 pub mod wire;
 
-pub use episode::{Episode, Lie, Style, episodes};
-pub use report::Report;
-pub use run::run;
-
+use episode::Episode;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 /// Runs the property on `cases` episodes that are the same on every machine.

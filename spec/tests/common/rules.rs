@@ -50,7 +50,10 @@ pub fn check(
     } else {
         broken("LIMIT-02", w.abs() <= episode.turn_radps + EPS);
     }
-    let age_us = decision.expires.as_us() - (now_us + super::run::EPOCH_US);
+    let age_us = decision
+        .expires
+        .as_us()
+        .saturating_sub(now_us + super::run::EPOCH_US);
     broken(
         "SILENT-01",
         age_us <= (episode.period_ms + episode.jitter_ms) * 1000,

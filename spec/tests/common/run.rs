@@ -4,11 +4,12 @@ use super::claim::{Contact, Sighting, Step};
 use super::episode::{Episode, Lie};
 use super::pilot::{Pilot, View};
 use super::report::Report;
+use super::tamper::{Raw, RawScan, Scene, Tamper, Untouched};
 use super::wire::{decode, encode};
 use haltline::Kernel;
 use haltline::convert;
 use haltline::decision::{Action, Decision, StopStatus};
-use haltline::input::{Beam, Inputs, Reading, Scan};
+use haltline::input::{Inputs, Reading, Scan};
 use haltline::time::Instant;
 use haltline_spec::draw::Draw;
 use haltline_spec::motion::Twist;
@@ -33,11 +34,11 @@ struct Delivery {
 }
 
 /// One moment of the truth and of what the robot measured of it.
-#[derive(Clone, Copy)]
-struct Truth {
-    pose: Pose,
-    odometry: Pose,
-    measured: Twist,
+#[derive(Clone, Copy, Debug)]
+pub struct Truth {
+    pub pose: Pose,
+    pub odometry: Pose,
+    pub measured: Twist,
 }
 
 struct Loop<'e> {
@@ -66,15 +67,21 @@ struct Loop<'e> {
 
 /// Runs one episode of `seconds`.
 pub fn run(episode: &Episode, seconds: f64) -> Report {
+    run_with(episode, seconds, &mut Untouched)
+}
+
+/// Runs one episode with somebody in between.
+pub fn run_with(episode: &Episode, seconds: f64, tamper: &mut dyn Tamper) -> Report {
     let mut run = Loop::new(episode);
     let end_us = (seconds * 1e6) as u64;
     let mut now_us = 0;
     while now_us < end_us && !run.over {
         let late_us = run.draw.unit() * episode.jitter_ms as f64 * 1e3;
-        let next_us = now_us + episode.period_ms * 1000 + late_us as u64;
+        let pause_us = tamper.pause_us(&mut run.draw);
+        let next_us = now_us + episode.period_ms * 1000 + late_us as u64 + pause_us;
         run.drive_until(next_us);
         now_us = next_us;
-        run.tick(now_us);
+        run.tick(now_us, tamper);
     }
     run.report
 }
@@ -196,52 +203,80 @@ impl<'e> Loop<'e> {
         moved.gap_m(&outline, self.plant.pose, t_s, self.episode.obstacle_mps) <= 0.0
     }
 
-    fn tick(&mut self, now_us: u64) {
-        let now = Instant::from_us(EPOCH_US + now_us);
+    fn tick(&mut self, now_us: u64, tamper: &mut dyn Tamper) {
         let stamp_us = now_us / SUB_US * SUB_US;
         let truth = self.history[(stamp_us / SUB_US) as usize];
+        let mut raw = self.raw(now_us, stamp_us, &truth);
+        tamper.alter(&mut raw, &mut self.draw);
+        let scans: Vec<_> = raw
+            .scans
+            .iter()
+            .map(|scan| {
+                if scan.malformed {
+                    return Reading::Malformed;
+                }
+                Reading::Value(Scan {
+                    scanner: scan.scanner,
+                    stamp: scan.stamp,
+                    beams: &scan.beams,
+                })
+            })
+            .collect();
+        let inputs = Inputs {
+            scans: &scans,
+            odometry: raw.odometry,
+            command: raw.command,
+            emergency_stop: raw.emergency_stop,
+            reset: raw.reset,
+        };
+        let decision = self.kernel.step(&inputs, raw.now);
+        let from = self.history.len().saturating_sub(50);
+        let broken = tamper.judge(&Scene {
+            raw: &raw,
+            decision: &decision,
+            set_point: decode(decision.setpoint),
+            recent: &self.history[from..],
+        });
+        self.report.faults.extend(broken);
+        self.obey(&decision, now_us, stamp_us, &truth);
+    }
+
+    /// What the sensors and the pilot hand over.
+    fn raw(&mut self, now_us: u64, stamp_us: u64, truth: &Truth) -> Raw {
         let deliveries = self.due(now_us);
         for delivery in &deliveries {
             self.note(delivery);
         }
-        let beams: Vec<Vec<Beam>> = deliveries.iter().map(|d| encode(&d.rays)).collect();
-        let scans: Vec<_> = deliveries
-            .iter()
-            .zip(&beams)
-            .map(|(delivery, beams)| {
-                Reading::Value(Scan {
-                    scanner: 0,
-                    stamp: Instant::from_us(EPOCH_US + delivery.stamp_us),
-                    beams,
-                })
-            })
-            .collect();
-        let odometry = convert::odometry(
-            Instant::from_us(EPOCH_US + stamp_us),
-            [
-                truth.odometry.x_m,
-                truth.odometry.y_m,
-                truth.odometry.theta_rad,
-            ],
-            [truth.measured.v_mps, truth.measured.omega_radps],
-            None,
-        );
+        let scans = deliveries.iter().map(|delivery| RawScan {
+            scanner: 0,
+            stamp: Instant::from_us(EPOCH_US + delivery.stamp_us),
+            beams: encode(&delivery.rays),
+            malformed: false,
+        });
         let view = View {
             episode: self.episode,
             world: &self.world,
             pose: truth.pose,
             now_us,
         };
-        let command = self.pilot.command(&view, &mut self.draw);
-        let inputs = Inputs {
-            scans: &scans,
-            odometry,
-            command,
+        let now = Instant::from_us(EPOCH_US + now_us);
+        Raw {
+            now,
+            scans: scans.collect(),
+            odometry: convert::odometry(
+                Instant::from_us(EPOCH_US + stamp_us),
+                [
+                    truth.odometry.x_m,
+                    truth.odometry.y_m,
+                    truth.odometry.theta_rad,
+                ],
+                [truth.measured.v_mps, truth.measured.omega_radps],
+                None,
+            ),
+            command: self.pilot.command(&view, &mut self.draw),
             emergency_stop: false,
             reset: (self.status == StopStatus::Latched).then_some(now),
-        };
-        let decision = self.kernel.step(&inputs, now);
-        self.obey(&decision, now_us, stamp_us, &truth);
+        }
     }
 
     fn due(&mut self, now_us: u64) -> Vec<Delivery> {
