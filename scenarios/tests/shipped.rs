@@ -1,5 +1,7 @@
 //! The shipped files: all load, name real requirements, and a few are run from end to end.
 
+#![allow(clippy::expect_used, clippy::panic)] // helpers outside of #[test] functions
+
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;

@@ -1,5 +1,9 @@
 //! CLAIM: the robot never touches, while it moves, a body that it knew of when it accepted the
 //! manoeuvre being executed.
+//!
+//! Stricter than the claim: a body counts as known once a beam has returned it, whether or not the
+//! kernel's memory was allowed to forget it since. Whatever stands still counts even if no beam
+//! ever returned it, because then it stands in unknown space, which no tube may enter.
 
 use haltline::decision::Action;
 
