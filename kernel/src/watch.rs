@@ -45,7 +45,7 @@ pub fn is_stale(stamp: Instant, now: Instant, age_max: Duration) -> bool {
 /// Whether the beams of a scan can be used: their number, and how many of them are invalid.
 ///
 /// # Source
-/// INPUT-04, INPUT-05.
+/// INPUT-05, INPUT-06, INPUT-07.
 #[must_use]
 pub fn beams_usable(scanner: &Scanner, beams: &[Beam]) -> bool {
     if beams.len() != usize::from(scanner.beams) {
@@ -97,7 +97,7 @@ const POSE_SLACK_URAD: u64 = 10_000;
 /// A jump is farther than the robot's speed limits plus the follow tolerance allow;
 /// an inconsistency is a pose that moved otherwise than the twists say.
 /// # Source
-/// INPUT-08, INPUT-09.
+/// INPUT-11, INPUT-12.
 #[must_use]
 pub fn odometry_fault<const S: usize>(
     config: &Config<S>,

@@ -215,7 +215,7 @@ pub fn braked<const S: usize>(config: &Config<S>, reference: Vertex, step: Durat
     )
 }
 
-/// Whether `candidate` lies in V_s ∩ V_d: what every accepted command must satisfy (LIMIT-01).
+/// Whether `candidate` lies in V_s ∩ V_d: what every accepted command must satisfy (LIMIT-01..05).
 #[must_use]
 pub fn admissible<const S: usize>(
     config: &Config<S>,

@@ -61,7 +61,7 @@ pub struct Touch {
 /// # Bound
 /// O(points × samples), at most one segment test each.
 /// # Source
-/// GUARD-01, GUARD-02, GUARD-07.
+/// GUARD-01, GUARD-14, GUARD-19.
 #[must_use]
 pub fn first_touch(
     tube: &Tube,

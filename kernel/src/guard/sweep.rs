@@ -258,7 +258,7 @@ impl<const B: usize> Sweep<B> {
     /// # Bound
     /// O(beams + rows crossed by the polygon's edges).
     /// # Source
-    /// MEMORY-05: visibility is per beam; between two beams the nearer range counts unless
+    /// MEMORY-06: visibility is per beam; between two beams the nearer range counts unless
     /// both returns bound one surface.
     pub fn mark_seen(&self, scanner: &Scanner, rules: SweepRules, seen: &mut Seen) {
         let mut rows: Rows = [0; CELLS];

@@ -19,7 +19,7 @@ const WINDOW: i32 = 128 << 8;
 /// # Bound
 /// O(samples × rows of the window).
 /// # Source
-/// GUARD-05; spec/model.md "Unknown space".
+/// GUARD-02; spec/model.md "Unknown space".
 #[must_use]
 pub fn entered(
     tube: &Tube,

@@ -36,7 +36,7 @@ pub struct Kernel<const S: usize, const B: usize, const M: usize> {
     command_fault: Option<Reason>,
     /// Since when the odometry has shown rest.
     resting_since: Option<Instant>,
-    /// Moving off from rest: what stood inside the inflation then is excused (GUARD-07).
+    /// Moving off from rest: what stood inside the inflation then is excused (GUARD-19).
     leaving: Option<Departure>,
     /// The last set point lay on a braking ramp.
     is_braking: bool,

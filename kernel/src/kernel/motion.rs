@@ -211,7 +211,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         )
     }
 
-    /// What the robot is excused while it leaves rest (GUARD-16).
+    /// What the robot is excused while it leaves rest (GUARD-19).
     ///
     /// Only in a static world: where bodies move, one that stands within reach may step nearer.
     fn excuse(&self) -> Option<Excuse> {

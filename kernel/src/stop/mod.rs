@@ -73,7 +73,7 @@ impl Default for StopState {
 /// # Bound
 /// O(1), no loop.
 /// # Source
-/// LATCH-01..05, ZONE-02, FRESH-05.
+/// LATCH-01..06, ZONE-04.
 #[must_use]
 pub fn next(state: StopState, events: &StopEvents, times: StopTimes) -> StopState {
     if events.emergency {
