@@ -1,11 +1,11 @@
 //! Exact distances between the footprint and every body, by `parry2d`: no code of the kernel.
 
 use haltline_robots::Footprint;
-use parry2d_f64::math::{Pose as ParryPose, Vector};
+use parry2d_f64::math::{Pose as ParryPose, Rot2, Vector};
 use parry2d_f64::query;
 use parry2d_f64::shape::{Ball, Cuboid, Segment, Shape as ParryShape};
 
-use crate::math::Pose;
+use crate::math::{Pose, sin_cos};
 use crate::world::{Shape, World};
 
 /// The judge: the robot's rectangle and the outlines of all bodies.
@@ -83,7 +83,10 @@ fn outline(shape: &Shape) -> Box<dyn ParryShape> {
 }
 
 fn isometry(pose: &Pose) -> ParryPose {
-    ParryPose::new(Vector::new(pose.x, pose.y), pose.theta)
+    // The rotation comes from portable sines, so that clearances have the same bits everywhere.
+    let (sin, cos) = sin_cos(pose.theta);
+    let rotation = Rot2::from_cos_sin_unchecked(cos, sin);
+    ParryPose::from_parts(Vector::new(pose.x, pose.y), rotation)
 }
 
 #[cfg(test)]
