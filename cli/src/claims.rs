@@ -3,8 +3,14 @@
 //! A claim without data is *not checkable*, never passed; a part that nobody examined is
 //! *not claimed yet*.
 
+mod replay;
+mod unclaimed;
+
+pub use replay::Replay;
+pub use unclaimed::not_claimed;
+
 use crate::report::words;
-use haltline_scenarios::result::{CaseResult, MonitorReport, Outcome, SuiteResult};
+use haltline_scenarios::result::{CaseResult, Judgement, MonitorReport, Outcome, SuiteResult};
 use serde::Serialize;
 
 /// Requirement families with a monitor that judges every tick of every guarded run.
@@ -77,6 +83,15 @@ impl Evidence {
         }
     }
 
+    /// Simulated runs without a count of ticks.
+    fn tested(words: impl Into<String>, runs: usize) -> Self {
+        Self {
+            kind: EvidenceKind::Tested,
+            runs,
+            ..Self::none(words)
+        }
+    }
+
     /// Arithmetic on the robot file.
     #[must_use]
     pub fn computed(words: impl Into<String>) -> Self {
@@ -132,37 +147,6 @@ pub fn first_of_each_case(found: &[Counterexample]) -> Vec<(&Counterexample, usi
     first
 }
 
-/// How to show a case again.
-#[derive(Clone, Debug)]
-pub struct Replay {
-    /// Folder of the scenario files as the user may type it.
-    pub folder: String,
-    /// Robot file, if it must be named.
-    pub robot: Option<String>,
-    /// Control period, seconds.
-    pub period_s: f64,
-}
-
-impl Replay {
-    /// The command that runs a case alone.
-    #[must_use]
-    pub fn command(&self, case: &CaseResult) -> String {
-        let file = format!("{}/{}.toml", self.folder, case.group);
-        let mut command = format!("haltline run {file}");
-        if let Some(variant) = case.name.strip_prefix(&format!("{}/", case.group)) {
-            command.push_str(&format!(" --variant '{variant}'"));
-        }
-        if let Some(robot) = &self.robot {
-            command.push_str(&format!(" --robot {robot}"));
-        }
-        command
-    }
-
-    fn tick(&self, t_s: f64) -> Option<u64> {
-        (self.period_s > 0.0).then(|| (t_s / self.period_s).round().max(0.0) as u64)
-    }
-}
-
 fn statement(id: &str) -> &'static str {
     match id {
         "CLAIM" => {
@@ -207,17 +191,7 @@ fn monitored(id: &str, suite: &SuiteResult, replay: &Replay) -> Claim {
     let checked = kept().map(|(_, r)| r.checked).sum();
     let engaged: u64 = kept().map(|(_, r)| r.engaged).sum();
     let violations: u64 = reports.iter().map(|(_, r)| r.violation_count).sum();
-    let counterexamples = reports
-        .iter()
-        .flat_map(|(case, report)| report.violations.iter().map(move |v| (case, v)))
-        .map(|(case, violation)| Counterexample {
-            case: case.name.clone(),
-            t_s: Some(violation.t_s),
-            tick: replay.tick(violation.t_s),
-            what: violation.what.clone(),
-            replay: replay.command(case),
-        })
-        .collect();
+    let counterexamples = violations_of(&reports, replay);
     let cases: Vec<String> = kept()
         .filter(|(_, report)| report.engaged > 0)
         .map(|(case, _)| case.name.clone())
@@ -248,36 +222,36 @@ fn monitored(id: &str, suite: &SuiteResult, replay: &Replay) -> Claim {
     }
 }
 
+fn violations_of(
+    reports: &[(&CaseResult, &MonitorReport)],
+    replay: &Replay,
+) -> Vec<Counterexample> {
+    reports
+        .iter()
+        .flat_map(|(case, report)| report.violations.iter().map(move |v| (case, v)))
+        .map(|(case, violation)| Counterexample {
+            case: case.name.clone(),
+            t_s: Some(violation.t_s),
+            tick: replay.tick(violation.t_s),
+            what: violation.what.clone(),
+            replay: replay.command(case),
+        })
+        .collect()
+}
+
 /// Every run came out as its file expects.
 fn scenarios(suite: &SuiteResult, replay: &Replay) -> Claim {
-    let failed = suite
-        .cases
-        .iter()
-        .filter(|case| case.judgement.outcome == Outcome::Fail)
-        .map(|case| Counterexample {
-            case: case.name.clone(),
-            t_s: None,
-            tick: None,
-            what: case.judgement.sentences.join(" "),
-            replay: replay.command(case),
-        });
-    let sweeps = suite
-        .groups
-        .iter()
-        .filter(|group| group.judgement.outcome == Outcome::Fail)
-        .map(|group| Counterexample {
-            case: group.group.clone(),
-            t_s: None,
-            tick: None,
-            what: group.judgement.sentences.join(" "),
-            replay: format!("haltline run {}/{}.toml", replay.folder, group.group),
-        });
-    let counterexamples: Vec<Counterexample> = failed.chain(sweeps).collect();
+    let counterexamples = unexpected(suite, replay);
     let runs = suite.cases.len();
     let status = match (counterexamples.is_empty(), runs) {
         (false, _) => Status::Failed,
         (true, 0) => Status::NotCheckable,
         (true, _) => Status::Holds,
+    };
+    let evidence = if runs == 0 {
+        Evidence::none("no scenario is for this robot")
+    } else {
+        Evidence::tested(format!("tested ({})", words::count(runs, "run")), runs)
     };
     Claim {
         id: "SCENARIOS".to_owned(),
@@ -285,20 +259,38 @@ fn scenarios(suite: &SuiteResult, replay: &Replay) -> Claim {
             "Every scenario came out as its file expects (goal reached, stopped before, blocked)."
                 .to_owned(),
         status,
-        evidence: if runs == 0 {
-            Evidence::none("no scenario is for this robot")
-        } else {
-            Evidence {
-                kind: EvidenceKind::Tested,
-                words: format!("tested ({})", words::count(runs, "run")),
-                runs,
-                ticks_checked: 0,
-                ticks_engaged: 0,
-            }
-        },
+        evidence,
         counterexamples,
         cases: suite.cases.iter().map(|case| case.name.clone()).collect(),
     }
+}
+
+/// Runs and sweeps that did not come out as their files expect.
+fn unexpected(suite: &SuiteResult, replay: &Replay) -> Vec<Counterexample> {
+    let found = |case: &str, judgement: &Judgement, replay: String| Counterexample {
+        case: case.to_owned(),
+        t_s: None,
+        tick: None,
+        what: judgement.sentences.join(" "),
+        replay,
+    };
+    let cases = suite
+        .cases
+        .iter()
+        .filter(|case| case.judgement.outcome == Outcome::Fail)
+        .map(|case| found(&case.name, &case.judgement, replay.command(case)));
+    let sweeps = suite
+        .groups
+        .iter()
+        .filter(|group| group.judgement.outcome == Outcome::Fail)
+        .map(|group| {
+            found(
+                &group.group,
+                &group.judgement,
+                replay.first_of(&group.group),
+            )
+        });
+    cases.chain(sweeps).collect()
 }
 
 /// The scenarios can hurt: without the guard, the robot touches.
@@ -323,13 +315,7 @@ fn twins(suite: &SuiteResult) -> Claim {
             words::count(twins.len(), "naked run"),
             touched.len()
         );
-        let evidence = Evidence {
-            kind: EvidenceKind::Tested,
-            words,
-            runs: twins.len(),
-            ticks_checked: 0,
-            ticks_engaged: 0,
-        };
+        let evidence = Evidence::tested(words, twins.len());
         (Status::Holds, evidence)
     };
     Claim {
@@ -341,60 +327,6 @@ fn twins(suite: &SuiteResult) -> Claim {
         counterexamples: Vec::new(),
         cases: touched,
     }
-}
-
-/// Parts of the certificate that nobody claims yet, with what there is instead.
-#[must_use]
-pub fn not_claimed() -> Vec<Claim> {
-    let property = "property tests in the repository, not run by this command";
-    let parts = [
-        (
-            "GUARD",
-            "No accepted tube contains a known point or enters unknown space.",
-            property,
-        ),
-        (
-            "BRAKE",
-            "An accepted tube always exists or the robot is at rest.",
-            property,
-        ),
-        (
-            "INPUT",
-            "Input that is malformed, reordered or missing is classified, never ignored.",
-            property,
-        ),
-        (
-            "MEMORY",
-            "A hit is never lost but by the rule; unknown is never free.",
-            property,
-        ),
-        (
-            "PROOFS",
-            "Machine-checked proofs on the compiled kernel.",
-            "no proof ledger yet",
-        ),
-        (
-            "ADVERSARY",
-            "Seeded hostile runs find no failure while the assumptions hold.",
-            "no search yet",
-        ),
-        (
-            "TIME",
-            "The work of a tick stays below a declared bound.",
-            "wall times of this machine are in timing.json; they bound nothing",
-        ),
-    ];
-    parts
-        .into_iter()
-        .map(|(id, statement, instead)| Claim {
-            id: id.to_owned(),
-            statement: statement.to_owned(),
-            status: Status::NotClaimed,
-            evidence: Evidence::none(instead),
-            counterexamples: Vec::new(),
-            cases: Vec::new(),
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -1,12 +1,15 @@
 //! `haltline certify`: exit codes, files, and the same bytes twice.
 
+// A test that cannot get its files or start the command fails here, which is what `expect` is for.
+#![allow(clippy::expect_used)]
+
 mod common;
 
 use common::{WALL_AHEAD, expect_exit, folder, haltline, root, stderr, stdout, write};
 use std::path::Path;
 
 /// The smallest set of shipped scenarios that exercises every monitor, and a wall.
-const SMALL: [&str; 3] = ["emergency_stop", "corridor_ahead", "overtaking"];
+const SMALL: [&str; 2] = ["emergency_stop", "overtaking"];
 
 fn small_folder(name: &str) -> std::path::PathBuf {
     let scenarios = folder(name);
@@ -48,10 +51,10 @@ fn two_runs_give_the_same_bytes_but_for_the_times() {
     let certificate: serde_json::Value = serde_json::from_str(&json).expect("valid");
     assert_eq!(certificate["schema"], "haltline-certificate/1");
     assert_eq!(certificate["verdict"]["exit_code"], 0);
-    assert_eq!(certificate["cases"].as_array().map(Vec::len), Some(4));
+    assert_eq!(certificate["cases"].as_array().map(Vec::len), Some(3));
     assert_eq!(
         certificate["scenario_files"].as_array().map(Vec::len),
-        Some(4)
+        Some(3)
     );
     assert!(!json.to_lowercase().contains("\"proved\""));
     let timing = std::fs::read_to_string(outs[0].join("timing.json")).expect("timing");

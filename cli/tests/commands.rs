@@ -1,5 +1,8 @@
 //! `run`, `explain`, `new`, help and usage.
 
+// A test that cannot get its files or start the command fails here, which is what `expect` is for.
+#![allow(clippy::expect_used)]
+
 mod common;
 
 use common::{WALL_AHEAD, expect_exit, folder, haltline, haltline_in, stderr, stdout, write};

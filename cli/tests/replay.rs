@@ -1,5 +1,8 @@
 //! `haltline replay` on a made-up drive, and on the recorded one where it is at hand.
 
+// A test that cannot get its files or start the command fails here, which is what `expect` is for.
+#![allow(clippy::expect_used)]
+
 mod common;
 
 use common::{expect_exit, folder, haltline, root, stderr, stdout, write};

@@ -231,6 +231,12 @@ impl Style {
                 0x22_c5_5e,
                 0.25,
             ),
+            _ => self.look_path(),
+        }
+    }
+
+    const fn look_path(self) -> Look {
+        match self {
             Self::PathPass => stroke("pass", 0x25_63_eb, 0x6f_a3_ff, 2.0),
             Self::PathSlow => stroke("slow", 0xe0_9a_00, 0xff_c9_4a, 2.6),
             Self::PathBrake => stroke("brake", 0xd9_5f_02, 0xff_93_4d, 2.8),

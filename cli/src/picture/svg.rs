@@ -97,19 +97,7 @@ fn write_item(out: &mut String, item: &Item, id: Option<&str>) {
             points,
             size,
             style,
-        } => {
-            let _ = write!(out, "<path class=\"{}\" d=\"", style.look().class);
-            for [x, y] in points {
-                let edge = px(*size);
-                let _ = write!(
-                    out,
-                    "M{} {}h{edge}v{edge}h-{edge}z",
-                    px(x - size / 2.0),
-                    px(y - size / 2.0)
-                );
-            }
-            out.push_str("\"/>\n");
-        }
+        } => write_dots(out, points, *size, style.look().class),
         Item::Actor {
             outline,
             frames,
@@ -124,22 +112,31 @@ fn write_item(out: &mut String, item: &Item, id: Option<&str>) {
             text,
             anchor,
             style,
-        } => {
-            let align = match anchor {
-                Anchor::Start => "",
-                Anchor::Middle => " text-anchor=\"middle\"",
-                Anchor::End => " text-anchor=\"end\"",
-            };
-            let _ = writeln!(
-                out,
-                "<text class=\"{}\" x=\"{}\" y=\"{}\"{align}>{}</text>",
-                style.look().class,
-                px(at[0]),
-                px(at[1]),
-                escape(text)
-            );
-        }
+        } => write_text(out, *at, text, *anchor, style.look().class),
     }
+}
+
+fn write_dots(out: &mut String, points: &[[f64; 2]], size: f64, class: &str) {
+    let edge = px(size);
+    let _ = write!(out, "<path class=\"{class}\" d=\"");
+    for [x, y] in points {
+        let (left, top) = (px(x - size / 2.0), px(y - size / 2.0));
+        let _ = write!(out, "M{left} {top}h{edge}v{edge}h-{edge}z");
+    }
+    out.push_str("\"/>\n");
+}
+
+fn write_text(out: &mut String, at: [f64; 2], text: &str, anchor: Anchor, class: &str) {
+    let align = match anchor {
+        Anchor::Start => "",
+        Anchor::Middle => " text-anchor=\"middle\"",
+        Anchor::End => " text-anchor=\"end\"",
+    };
+    let (x, y, text) = (px(at[0]), px(at[1]), escape(text));
+    let _ = writeln!(
+        out,
+        "<text class=\"{class}\" x=\"{x}\" y=\"{y}\"{align}>{text}</text>"
+    );
 }
 
 /// Hidden until the picture is clicked; then it runs through its frames once and stays.

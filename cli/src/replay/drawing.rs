@@ -203,13 +203,27 @@ fn draw_scale(picture: &mut Picture, view: &View) {
 }
 
 fn draw_panel(picture: &mut Picture, scene: &Scene<'_>, x: f64, height: f64) {
-    picture.text(
-        [x, 28.0],
-        Anchor::Start,
-        Style::LabelStrong,
-        scene.title.clone(),
-    );
-    let mut y = 54.0;
+    let title = scene.title.clone();
+    picture.text([x, 28.0], Anchor::Start, Style::LabelStrong, title);
+    let mut y = draw_legend(picture, x, 54.0) + 16.0;
+    let heading = "where it would have braked or stopped";
+    picture.text([x, y], Anchor::Start, Style::LabelStrong, heading);
+    let stops = scene.events.iter().enumerate();
+    for (index, event) in stops.filter(|(_, event)| event.is_stop()) {
+        y += 16.0;
+        if y > height - 30.0 {
+            let more = "... more in replay.json";
+            picture.text([x, y], Anchor::Start, Style::Label, more);
+            break;
+        }
+        let text = format!("{:>3}  {}", index + 1, event.sentence());
+        picture.text([x, y], Anchor::Start, Style::Label, text);
+    }
+}
+
+/// What the colours mean; returns the base line below.
+fn draw_legend(picture: &mut Picture, x: f64, top: f64) -> f64 {
+    let mut y = top;
     let lines = [
         (Style::PathPass, "guard would pass the motion"),
         (Style::PathSlow, "guard would slow it"),
@@ -240,31 +254,5 @@ fn draw_panel(picture: &mut Picture, scene: &Scene<'_>, x: f64, height: f64) {
         Style::Label,
         "seen free by some beam",
     );
-    y += 34.0;
-    picture.text(
-        [x, y],
-        Anchor::Start,
-        Style::LabelStrong,
-        "where it would have braked or stopped",
-    );
-    y += 20.0;
-    for (index, event) in scene
-        .events
-        .iter()
-        .enumerate()
-        .filter(|(_, event)| event.is_stop())
-    {
-        if y > height - 30.0 {
-            picture.text(
-                [x, y],
-                Anchor::Start,
-                Style::Label,
-                "... more in replay.json",
-            );
-            break;
-        }
-        let text = format!("{:>3}  {}", index + 1, event.sentence());
-        picture.text([x, y], Anchor::Start, Style::Label, text);
-        y += 16.0;
-    }
+    y + 18.0
 }

@@ -71,6 +71,12 @@ pub fn course(log: &Log, period_s: f64) -> Vec<Moment> {
     moments
 }
 
+/// Whether a twist is rest.
+#[must_use]
+pub fn rests([linear, angular]: [f64; 2]) -> bool {
+    linear.abs() < 1e-9 && angular.abs() < 1e-9
+}
+
 /// Enters what was told before and wanted after each tick.
 fn link(moments: &mut [Moment]) {
     let speeds: Vec<[f64; 2]> = moments.iter().map(|moment| moment.speed).collect();
@@ -114,12 +120,12 @@ fn along(from: Pose, [dx, dy, dtheta]: [f64; 3], part: f64) -> Pose {
 
 /// Mean motion around a row; zero where the robot did not move at that row at all.
 fn twist(log: &Log, poses: &[Pose], index: usize) -> [f64; 2] {
-    let rests = |row: usize| {
+    let stands = |row: usize| {
         log.rows
             .get(row)
             .is_none_or(|row| row.increment_m_rad.iter().all(|part| part.abs() < 1e-4))
     };
-    if rests(index) && rests(index + 1) {
+    if stands(index) && stands(index + 1) {
         return [0.0, 0.0];
     }
     let from = index.saturating_sub(SMOOTHING);
@@ -228,8 +234,8 @@ mod tests {
         assert_eq!(rows, vec![Some(0), None, None, None, None, Some(1)]);
         assert!((moments[2].t_s - 0.2).abs() < 1e-12);
         assert!(near([moments[2].pose[0], moments[2].pose[1]], [0.08, 0.0]));
-        assert_eq!(moments[2].told, moments[1].speed);
-        assert_eq!(moments[2].wanted, moments[3].speed);
+        assert!(near(moments[2].told, moments[1].speed));
+        assert!(near(moments[2].wanted, moments[3].speed));
         assert!((length_m(&moments) - 0.2).abs() < 1e-12);
     }
 

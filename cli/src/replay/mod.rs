@@ -4,6 +4,7 @@ mod drawing;
 mod drive;
 mod events;
 mod shadow;
+mod verdict;
 
 use crate::args::{LogFormat, ReplayArgs};
 use crate::failure::{Exit, Failure, write_file};
@@ -85,6 +86,12 @@ fn print_summary(
         "The recorded robot does not obey the kernel: each verdict is about its own moment. The drive is \
          not checked\nagainst the decisions, and a stop is released once the kernel itself has come to rest.\n"
     );
+    print_counts(judged);
+    print_events(events);
+    print_times(judged);
+}
+
+fn print_counts(judged: &[Judged]) {
     let mut counts: BTreeMap<(String, String), usize> = BTreeMap::new();
     for verdict in judged {
         let why = verdict.refusal.as_ref().unwrap_or(&verdict.reason);
@@ -100,6 +107,9 @@ fn print_summary(
             words::reason(why)
         );
     }
+}
+
+fn print_events(events: &[Event]) {
     say!(
         "\n{:>3}  {:>7}  {:>5}  {:>6}  event",
         "#",
@@ -125,7 +135,6 @@ fn print_summary(
             words::reason(why)
         );
     }
-    print_times(judged);
 }
 
 fn print_times(judged: &[Judged]) {

@@ -1,23 +1,20 @@
 //! The kernel in shadow: it sees a recorded drive, decides, and nobody obeys.
 
 use super::drive::Moment;
+use super::verdict::{ask_guard, hazard};
 use crate::failure::Failure;
 use crate::picture::view::{Pose, transform};
-use crate::report::words;
 use crate::sena::Log;
 use haltline::convert::{self, Round};
-use haltline::decision::{Action, Decision, Reason, StopStatus};
-use haltline::guard::hull::{Hull, Vertex};
-use haltline::guard::{Scene, Verdict, certify};
-use haltline::input::{Beam, Inputs, Reading, Scan, Twist};
+use haltline::decision::{Decision, StopStatus};
+use haltline::input::{Beam, Inputs, Reading, Scan};
 use haltline::time::{Duration, Instant};
-use haltline::units::{AngularSpeed, Curvature, Speed};
-use haltline::window::FACTORS_PERMILLE;
+use haltline::units::{AngularSpeed, Speed};
 use haltline_robots::{BEAMS, MEMORY, Robot, RobotConfig, SCANNERS};
 use std::time::Instant as WallClock;
 
 /// The kernel of a robot file.
-type Shadow = haltline::Kernel<SCANNERS, BEAMS, MEMORY>;
+pub type Shadow = haltline::Kernel<SCANNERS, BEAMS, MEMORY>;
 
 /// The largest tolerances that the kernel takes.
 const TOLERANCE_MAX: Speed = Speed::from_um_per_s(2_000_000);
@@ -199,133 +196,8 @@ fn judge(
     judged
 }
 
-fn in_world(pose: Pose, x_mm: i16, y_mm: i16) -> [f64; 2] {
+/// A body-frame point in millimetres, in the frame of the first row.
+#[must_use]
+pub fn in_world(pose: Pose, x_mm: i16, y_mm: i16) -> [f64; 2] {
     transform(pose, [f64::from(x_mm) / 1e3, f64::from(y_mm) / 1e3])
-}
-
-/// What the stop logic objects to in this tick.
-///
-/// That the drive does not follow, and that an earlier stop has not been released yet, says nothing
-/// about a robot that does not obey.
-fn hazard(kernel: &Shadow, decision: &Decision, moment: &Moment, robot: &Robot) -> Option<Judged> {
-    let stops = decision.action >= Action::ProtectiveStop;
-    let of_the_shadow = matches!(
-        decision.reason,
-        Reason::DriveMismatch | Reason::WaitingForRelease | Reason::Startup
-    );
-    let nearest = nearest_to_footprint(kernel, robot);
-    let in_zone = nearest.is_some_and(|(_, inside)| inside);
-    let reason = match (stops, of_the_shadow, in_zone) {
-        (true, false, _) => decision.reason,
-        // Hidden behind the shadow's own objections, but there all the same.
-        (_, _, true) => Reason::CriticalZone,
-        _ => return None,
-    };
-    let point = nearest
-        .filter(|_| reason == Reason::CriticalZone)
-        .map(|(point, _)| transform(moment.pose, point));
-    Some(Judged {
-        action: "protective_stop".to_owned(),
-        reason: words::snake(&format!("{reason:?}")),
-        point_m: point,
-        ..Judged::default()
-    })
-}
-
-/// Asks the guard about the recorded motion, then about slower ones of the same curvature.
-///
-/// The hull is that of a robot that was told what it did: the motion measured now, the one told a
-/// tick ago, and the one that came next.
-fn ask_guard(kernel: &Shadow, moment: &Moment) -> Judged {
-    let (config, track) = (kernel.config(), kernel.track());
-    let (Some(odometry), Some(pose)) = (track.newest(), track.pose()) else {
-        return Judged::default();
-    };
-    let scene = Scene {
-        memory: kernel.memory(),
-        model: config.memory(),
-        pose,
-        stamp: odometry.stamp,
-        odometer: track.odometer(),
-        skirt_um: u64::from(config.config().memory.skirt.as_um().unsigned_abs()),
-        excuse: (moment.told == [0.0, 0.0]).then(haltline::guard::check::Excuse::default),
-    };
-    let mut refused: Option<Verdict> = None;
-    if moment.wanted == [0.0, 0.0] {
-        // To stand still needs no certificate.
-        return passed(1000);
-    }
-    for factor_permille in FACTORS_PERMILLE {
-        let factor = f64::from(factor_permille) / 1e3;
-        let mut hull = Hull::default();
-        let slower = moment.wanted.map(|value| value * factor);
-        for [linear, angular] in [moment.speed, moment.told, slower] {
-            hull.push(Vertex {
-                twist: Twist {
-                    linear: convert::speed(linear, Round::Nearest).unwrap_or_default(),
-                    angular: convert::angular_speed(angular, Round::Nearest).unwrap_or_default(),
-                },
-                curvature: Curvature::ZERO,
-            });
-        }
-        let verdict = certify(
-            config.tube(),
-            &hull,
-            config.reaction_us(Duration::ZERO),
-            &scene,
-        );
-        if verdict.refusal.is_none() {
-            return passed(factor_permille);
-        }
-        refused.get_or_insert(verdict);
-    }
-    let refusal = refused.and_then(|verdict| verdict.refusal);
-    Judged {
-        action: "brake".to_owned(),
-        reason: "guard_blocked".to_owned(),
-        refusal: refusal.map(|refusal| words::snake(&format!("{refusal:?}"))),
-        point_m: refused
-            .and_then(|verdict| verdict.point)
-            .map(|point| in_world(moment.pose, point.x_mm, point.y_mm)),
-        ..Judged::default()
-    }
-}
-
-fn passed(factor_permille: u16) -> Judged {
-    let (action, reason) = match factor_permille {
-        1000 => ("pass", "none"),
-        _ => ("slow", "guard_limited"),
-    };
-    Judged {
-        action: action.to_owned(),
-        reason: reason.to_owned(),
-        factor: f64::from(factor_permille) / 1e3,
-        ..Judged::default()
-    }
-}
-
-/// The known point nearest to the footprint in the body frame, and whether it lies in the critical zone.
-fn nearest_to_footprint(kernel: &Shadow, robot: &Robot) -> Option<([f64; 2], bool)> {
-    let (body, zone) = (&robot.values.footprint, &robot.values.zone);
-    let outside = |value: f64, low: f64, high: f64| (low - value).max(value - high).max(0.0);
-    kernel
-        .memory()
-        .clouds()
-        .flatten()
-        .map(|p| [f64::from(p.x_mm) / 1e3, f64::from(p.y_mm) / 1e3])
-        .map(|[x, y]| {
-            let gap = outside(x, -body.rear_m, body.front_m).hypot(outside(
-                y,
-                -body.right_m,
-                body.left_m,
-            ));
-            (gap, [x, y])
-        })
-        .min_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, [x, y])| {
-            let inside = outside(x, -body.rear_m - zone.side_m, body.front_m + zone.front_m).max(
-                outside(y, -body.right_m - zone.side_m, body.left_m + zone.side_m),
-            ) <= 0.0;
-            ([x, y], inside)
-        })
 }

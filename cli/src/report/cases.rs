@@ -2,14 +2,11 @@
 
 use super::claims::case_anchor;
 use super::drawing::{self, Subject};
-use super::words;
+use super::{sweeps, words};
 use crate::certificate::{CaseRecord, Certificate};
 use crate::picture::svg::{self, escape};
-use haltline_scenarios::result::{CaseResult, GroupResult, Outcome, SuiteResult};
+use haltline_scenarios::result::{CaseResult, Outcome, SuiteResult};
 use std::fmt::Write as _;
-
-/// Size of a map in a sweep, pixels.
-const THUMB: [f64; 2] = [260.0, 180.0];
 
 /// The section with all runs: single scenarios first, then sweeps.
 pub fn write(page: &mut String, certificate: &Certificate, suite: &SuiteResult) {
@@ -27,7 +24,7 @@ pub fn write(page: &mut String, certificate: &Certificate, suite: &SuiteResult) 
         single.into_iter().partition(|case| breaks(case));
     cards(page, &keeping, certificate);
     for group in &suite.groups {
-        sweep(page, group, suite, certificate);
+        sweeps::write(page, group, suite, certificate);
     }
     if !breaking.is_empty() {
         page.push_str(
@@ -100,7 +97,9 @@ fn legend(page: &mut String) {
     page.push_str("<span>⊗ contact</span><span>❶ robot came to rest</span><span>▶ click on a picture to play it</span></div>\n");
 }
 
-fn outcome_chip(outcome: Outcome) -> &'static str {
+/// The verdict on a run or a sweep.
+#[must_use]
+pub fn outcome_chip(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Pass => "<span class=\"chip pass\">as expected</span>",
         Outcome::Fail => "<span class=\"chip fail\">FAILED</span>",
@@ -243,77 +242,4 @@ fn failure_or_details(page: &mut String, case: &CaseResult, record: &CaseRecord)
         case.seed,
         escape(&record.replay)
     );
-}
-
-fn sweep(page: &mut String, group: &GroupResult, suite: &SuiteResult, certificate: &Certificate) {
-    let cases: Vec<&CaseResult> = suite
-        .cases
-        .iter()
-        .filter(|c| c.group == group.group)
-        .collect();
-    let title = cases
-        .first()
-        .map_or(group.group.as_str(), |case| case.title.as_str());
-    let _ = write!(
-        page,
-        "<h2 id=\"{}\">{} {}</h2><div class=\"facts\"><span>variants <b>{}</b></span><span>guarded runs that touched \
-         while moving <b>{}</b></span><span>naked runs that touched <b>{}</b> (at least {} must)</span></div>",
-        case_anchor(&group.group),
-        escape(title),
-        outcome_chip(group.judgement.outcome),
-        group.variants,
-        group.guarded_touched,
-        group.naked_touched,
-        group.naked_required
-    );
-    for sentence in &group.judgement.sentences {
-        let class = match group.judgement.outcome {
-            Outcome::Fail => "bad small",
-            Outcome::Pass => "soft small",
-        };
-        let _ = write!(page, "<p class=\"{class}\">{}</p>", escape(sentence));
-    }
-    page.push_str("<div class=\"thumbs\">");
-    for case in cases {
-        let record = certificate
-            .cases
-            .iter()
-            .find(|record| record.name == case.name);
-        thumb(page, case, record);
-    }
-    page.push_str("</div>\n");
-}
-
-fn thumb(page: &mut String, case: &CaseResult, record: Option<&CaseRecord>) {
-    let variant = case.name.rsplit('/').next().unwrap_or(&case.name);
-    let _ = write!(
-        page,
-        "<article class=\"card\" id=\"{}\">",
-        case_anchor(&case.name)
-    );
-    if let Some(picture) = drawing::thumbnail(case, THUMB) {
-        page.push_str(&svg::element(&picture));
-    }
-    let failed = case.judgement.outcome == Outcome::Fail;
-    let _ = write!(
-        page,
-        "<div class=\"body\"><b>{}</b> {}<div class=\"soft\">{}</div>",
-        escape(variant),
-        if failed {
-            outcome_chip(Outcome::Fail)
-        } else {
-            ""
-        },
-        escape(&words::outcome(case))
-    );
-    if let Some(record) = record.filter(|_| failed) {
-        let sentences = record.sentences.join(" ");
-        let _ = write!(
-            page,
-            "<p class=\"bad\">{}</p><pre>{}</pre>",
-            escape(&sentences),
-            escape(&record.replay)
-        );
-    }
-    page.push_str("</div></article>");
 }

@@ -7,6 +7,7 @@ pub mod contract;
 pub mod drawing;
 pub mod page;
 pub mod robot;
+mod sweeps;
 pub mod words;
 
 #[cfg(test)]
