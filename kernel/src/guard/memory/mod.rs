@@ -4,15 +4,22 @@
 //! must be given up (store full, too old, out of reach) its place becomes unknown,
 //! which counts as occupied.
 
+mod cloud;
+mod model;
+#[cfg(test)]
+mod tests;
+
+pub use model::{MemoryModel, Staleness};
+
 use super::check::CloudPoint;
 use super::seen::{CELLS, COVER_MM, Rows, Seen, flip_left_of_edge};
 use super::sweep::{Sight, Sweep, SweepPoint, SweepRules};
 use crate::arith::{mul_div_up, mul_micro_up};
 use crate::config::Scanner;
-use crate::geometry::frame::{BodyView, PointMm, polar};
+use crate::geometry::frame::{PointMm, polar};
 use crate::input::Beam;
 use crate::odometry::{AnchorShift, LocalPose, Odometer};
-use crate::time::{Duration, Instant};
+use crate::time::Instant;
 use crate::units::BinaryAngle;
 
 /// Rounding of a stored point against a beam, mm.
@@ -39,59 +46,6 @@ pub struct Remembered {
     pub stamp: Instant,
     /// Odometer when it was last returned.
     pub odometer: Odometer,
-}
-
-/// How points age.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct MemoryModel {
-    /// Scans that must look past a point before it is forgotten.
-    pub clear_after_scans: u8,
-    /// Age at which points and space become unknown.
-    pub age_max: Duration,
-    /// Position error per distance, ppm.
-    pub drift_linear_ppm: u64,
-    /// Heading error per angle, ppm.
-    pub drift_angular_ppm: u64,
-    /// Obstacles' speed bound, µm/s.
-    pub obstacle_speed: u64,
-    /// Largest point error of any scanner, µm.
-    pub sensor_um: u64,
-    /// Neighbouring returns up to this far apart bound one surface, mm.
-    pub join_mm: i32,
-    /// Bodies at least this wide are seen, µm.
-    pub body_width_um: u64,
-}
-
-/// Error of a point seen earlier, split by cause.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Staleness {
-    /// Position error of the odometry since, µm.
-    pub drift_um: u64,
-    /// Heading error of the odometry since, µrad.
-    pub turn_urad: u64,
-    /// Own motion of the obstacle since, µm.
-    pub moved_um: u64,
-}
-
-impl MemoryModel {
-    /// Errors of a point last seen at `stamp` and `then`, at `now` and `odometer`.
-    #[must_use]
-    pub fn staleness(
-        &self,
-        stamp: Instant,
-        then: Odometer,
-        now: Instant,
-        odometer: Odometer,
-    ) -> Staleness {
-        let travelled = odometer.travelled_um.saturating_sub(then.travelled_um);
-        let turned = odometer.turned_urad.saturating_sub(then.turned_urad);
-        let age = now.since(stamp).unwrap_or_default().as_us();
-        Staleness {
-            drift_um: mul_micro_up(self.drift_linear_ppm, travelled),
-            turn_urad: mul_micro_up(self.drift_angular_ppm, turned),
-            moved_um: mul_micro_up(self.obstacle_speed, age),
-        }
-    }
 }
 
 /// The guard's memory: up to `S` scanners of `B` beams and `M` remembered points.
@@ -328,41 +282,6 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
         self.eroded_at = (now, odometer);
     }
 
-    /// Places all points in the body frame of `pose`, each with its own inflation.
-    ///
-    /// # Bound
-    /// O(points).
-    pub fn refresh(
-        &mut self,
-        model: &MemoryModel,
-        pose: LocalPose,
-        now: Instant,
-        odometer: Odometer,
-    ) {
-        let view = BodyView::new(pose.x_um, pose.y_um, pose.heading);
-        for (sweep, cloud) in self.sweeps.iter().zip(self.clouds.iter_mut()) {
-            let stale = model.staleness(sweep.stamp(), sweep.odometer(), now, odometer);
-            let own = OwnTerms::new(model, &stale);
-            for (point, slot) in sweep.points().iter().zip(cloud.iter_mut()) {
-                *slot = own.place(&view, (point.x_mm, point.y_mm), point.gap_mm, point.joined);
-            }
-        }
-        let remembered = self.remembered.get(..self.count).unwrap_or(&[]);
-        // Neighbours in the store mostly come from one scan.
-        let mut same: Option<(Instant, OwnTerms)> = None;
-        for (point, slot) in remembered.iter().zip(self.remembered_cloud.iter_mut()) {
-            let own = match same {
-                Some((stamp, own)) if stamp == point.stamp => own,
-                _ => {
-                    let stale = model.staleness(point.stamp, point.odometer, now, odometer);
-                    OwnTerms::new(model, &stale)
-                }
-            };
-            same = Some((point.stamp, own));
-            *slot = own.place(&view, (point.x_mm, point.y_mm), point.gap_mm, false);
-        }
-    }
-
     /// Takes the operator's word that the disc of `radius_mm` around the robot is free
     /// (as a regular 16-gon inside it). Points stay what they are.
     pub fn vouch(&mut self, pose: LocalPose, radius_mm: i32) {
@@ -386,41 +305,6 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
             flip_left_of_edge(&mut rows, corner(number), corner(number.saturating_add(1)));
         }
         self.seen.mark(&rows);
-    }
-
-    /// All known points in the body frame of the last [`Self::refresh`]: scans, then memory.
-    pub fn clouds(&self) -> impl Iterator<Item = &[CloudPoint]> {
-        self.sweeps
-            .iter()
-            .zip(&self.clouds)
-            .map(|(sweep, cloud)| cloud.get(..sweep.points().len()).unwrap_or(&[]))
-            .chain(core::iter::once(
-                self.remembered_cloud.get(..self.count).unwrap_or(&[]),
-            ))
-    }
-
-    /// Causes of the own inflation of point `index` of slice `slice` of [`Self::clouds`].
-    #[must_use]
-    pub fn cause(
-        &self,
-        model: &MemoryModel,
-        (slice, index): (usize, usize),
-        now: Instant,
-        odometer: Odometer,
-    ) -> (Staleness, u16) {
-        if let Some(sweep) = self.sweeps.get(slice) {
-            let gap = sweep.points().get(index).map_or(0, |point| point.gap_mm);
-            (
-                model.staleness(sweep.stamp(), sweep.odometer(), now, odometer),
-                gap,
-            )
-        } else {
-            let point = self.remembered.get(index).copied().unwrap_or_default();
-            (
-                model.staleness(point.stamp, point.odometer, now, odometer),
-                point.gap_mm,
-            )
-        }
     }
 
     /// Follows the anchor.
@@ -462,54 +346,6 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
     #[must_use]
     pub const fn overflows(&self) -> u32 {
         self.overflows
-    }
-}
-
-/// Own inflation of all points seen at one time.
-#[derive(Clone, Copy)]
-struct OwnTerms {
-    constant_mm: u64,
-    /// Heading error in 2⁻²⁰ per mm of distance, rounded up.
-    lever_q20: u64,
-}
-
-impl OwnTerms {
-    fn new(model: &MemoryModel, stale: &Staleness) -> Self {
-        Self {
-            constant_mm: model
-                .sensor_um
-                .saturating_add(stale.drift_um)
-                .saturating_add(stale.moved_um)
-                .div_ceil(1000),
-            lever_q20: mul_div_up(stale.turn_urad, 1_048_577, 1_000_000),
-        }
-    }
-
-    #[inline]
-    fn place(&self, view: &BodyView, (x, y): (i16, i16), gap_mm: u16, joined: bool) -> CloudPoint {
-        let seen = view.see(PointMm {
-            x: i32::from(x),
-            y: i32::from(y),
-        });
-        let Some((x_mm, y_mm)) =
-            seen.and_then(|p| Some((i16::try_from(p.x).ok()?, i16::try_from(p.y).ok()?)))
-        else {
-            // A segment to a far point would be longer than the join limit allows.
-            return CloudPoint::FAR;
-        };
-        let distance =
-            u64::from(x_mm.unsigned_abs()).saturating_add(u64::from(y_mm.unsigned_abs()));
-        let lever_mm = (distance.saturating_mul(self.lever_q20) >> 20).saturating_add(1);
-        let extra = self
-            .constant_mm
-            .saturating_add(lever_mm)
-            .saturating_add(u64::from(gap_mm));
-        CloudPoint {
-            x_mm,
-            y_mm,
-            extra_mm: u16::try_from(extra).unwrap_or(u16::MAX),
-            joined,
-        }
     }
 }
 
