@@ -68,16 +68,30 @@ fn truthful(name: &str, cases: u32, styles: &[Style], moving: bool, change: fn(&
     );
 }
 
+//= spec/guard.md#guard-01
+//= type=test
+//# The guard MUST refuse a motion when a known point lies in one of the inflated samples of its tube.
+//= spec/brake.md#brake-02
+//= type=test
+//# At every tick the robot MUST be at rest or inside a tube that was accepted at an earlier tick and not yet left by time.
 #[test]
 fn differential_in_a_static_world() {
     truthful("static", 60, &ALL, false, |episode| episode.steered = false);
 }
 
+//= spec/guard.md#guard-07
+//= type=test
+//# The obstacle term of a point at a sample MUST be no less than the obstacle speed bound times the sum of the point's age
+//# at the odometry stamp and the latest time at which the robot can be at that sample and still move.
 #[test]
 fn differential_among_moving_bodies() {
     truthful("moving", 60, &ALL, true, |episode| episode.steered = false);
 }
 
+//= spec/guard.md#guard-13
+//= type=test
+//# The curvature interval of an Ackermann tube MUST contain every wheel angle the steering can have at any moment of the
+//# tube, widened by the curvature tolerance.
 #[test]
 fn steered_in_a_static_world() {
     truthful("steered", 60, &ALL, false, |episode| episode.steered = true);
@@ -90,6 +104,10 @@ fn steered_among_moving_bodies() {
     });
 }
 
+//= spec/guard.md#guard-11
+//= type=test
+//# Where the drive may ramp speed and turn rate separately, the tube MUST contain every trajectory in which either of
+//# them reaches zero first.
 #[test]
 fn separate_ramps() {
     truthful("separate", 60, &ALL, false, |episode| {
@@ -133,6 +151,10 @@ fn twin(lie: Lie, cases: u32, moving: bool, change: fn(&mut Episode)) {
     );
 }
 
+//= spec/guard.md#guard-06
+//= type=test
+//# Every sample MUST be inflated by no less than the sum of sensor error, beam gap, odometry error, obstacle motion,
+//# tracking error, sampling, spread and rounding as derived in the model.
 #[test]
 fn false_twins() {
     twin(Lie::Latency, 20, false, |e| e.latency_ms = 250);

@@ -79,6 +79,66 @@ fn sum(cases: u32, lie: Lie) -> Total {
     total.into_inner()
 }
 
+//= spec/fresh.md#fresh-01
+//= type=test
+//# The kernel MUST stop while the newest usable scan of any configured scanner is older than `scan_age_max`.
+//= spec/fresh.md#fresh-02
+//= type=test
+//# The kernel MUST stop while the newest usable odometry is older than `odometry_age_max`.
+//= spec/fresh.md#fresh-03
+//= type=test
+//# The kernel MUST brake while the newest usable command is older than `command_age_max`.
+//= spec/fresh.md#fresh-04
+//= type=test
+//# Data stamped later than `now` MUST be treated as stale.
+//= spec/fresh.md#fresh-06
+//= type=test
+//# The kernel MUST stop while any configured scanner, or the odometry, has never delivered a usable value.
+//= spec/fresh.md#fresh-07
+//= type=test
+//# The kernel MUST stop when scans repeat bit by bit although the robot moves.
+//= spec/silent.md#silent-02
+//= type=test
+//# A tick later than control period plus jitter after the one before MUST start a protective stop.
+//= spec/silent.md#silent-03
+//= type=test
+//# A tick whose `now` is not later than the one before MUST start a protective stop.
+//= spec/latch.md#latch-01
+//= type=test
+//# A kernel that was just created MUST be latched.
+//= spec/latch.md#latch-02
+//= type=test
+//# A pulled emergency stop line MUST latch an emergency stop in the same tick.
+//= spec/latch.md#latch-03
+//= type=test
+//# An emergency stop MUST hold until a reset is given at rest with the line released.
+//= spec/latch.md#latch-04
+//= type=test
+//# A reset MUST have no effect unless its stamp is later than the moment at which the stop was latched and not later than `now`.
+//= spec/latch.md#latch-05
+//= type=test
+//# A protective stop MUST hold until the robot is at rest and its cause has been gone for the clear time.
+//= spec/latch.md#latch-06
+//= type=test
+//# After a release the kernel MUST NOT execute a command stamped at or before the release.
+//= spec/input.md#input-05
+//= type=test
+//# A scan with a larger part of invalid beams than `invalid_max` MUST be unusable.
+//= spec/input.md#input-06
+//= type=test
+//# A scan with a wider run of consecutive invalid beams than `invalid_gap_max` MUST be unusable.
+//= spec/input.md#input-07
+//= type=test
+//# A scan with the wrong number of beams or an unknown scanner MUST be unusable.
+//= spec/input.md#input-08
+//= type=test
+//# A value stamped no later than the newest of its channel MUST NOT replace it.
+//= spec/input.md#input-10
+//= type=test
+//# A malformed value MUST stop or brake the robot in the same tick.
+//= spec/input.md#input-11
+//= type=test
+//# The kernel MUST stop when the odometry pose moved farther between two samples than the robot can.
 #[test]
 fn no_motion_is_accepted_on_bad_input() {
     let total = sum(if cfg!(debug_assertions) { 30 } else { 80 }, Lie::None);

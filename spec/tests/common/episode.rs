@@ -72,6 +72,12 @@ pub enum Lie {
     Rest,
     /// A hazard need not be gone for any time.
     Clear,
+    /// The odometry is exact.
+    Drift,
+    /// There is no critical zone.
+    Zone,
+    /// One scan that looks past a point clears it.
+    ClearAfter,
 }
 
 /// Everything that is drawn for one run.
@@ -104,6 +110,8 @@ pub struct Episode {
     pub obstacle_mps: f64,
     pub bodies: usize,
     pub thin: bool,
+    /// Margins of the critical zone: in front, elsewhere.
+    pub zone_m: [f64; 2],
 }
 
 prop_compose! {
@@ -149,6 +157,7 @@ prop_compose! {
             obstacle_mps: if moving { obstacle_mps } else { 0.0 },
             bodies,
             thin: flags[2],
+            zone_m: [0.01, 0.005],
         }
     }
 }
@@ -272,8 +281,8 @@ impl Episode {
             timing: self.timing(),
             tolerances: self.tolerances(),
             zone: ZoneMargins {
-                front: up_um(0.01),
-                side: up_um(0.005),
+                front: up_um(self.zone_m[0]),
+                side: up_um(self.zone_m[1]),
             },
             scanners: [Some(self.scanner_config()), None],
             memory: MemoryRules {
@@ -423,6 +432,13 @@ impl Episode {
                 config.tolerances.rest_speed = convert::speed(0.3, Round::Up).unwrap();
             }
             Lie::Clear => config.timing.clear = Duration::ZERO,
+            Lie::Drift => {
+                let exact = convert::ratio(0.0, Round::Up).unwrap();
+                config.tolerances.odometry_linear = exact;
+                config.tolerances.odometry_angular = exact;
+            }
+            Lie::Zone => config.zone = ZoneMargins::default(),
+            Lie::ClearAfter => config.memory.clear_after_scans = 1,
             Lie::Footprint => {
                 config.footprint.front = up_um(self.edges_m[0] - 0.05);
                 config.footprint.left = up_um(self.edges_m[2] - 0.05);

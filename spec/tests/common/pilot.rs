@@ -101,7 +101,10 @@ impl Pilot {
 
     /// Straight for the target.
     fn aim(&self, view: &View<'_>, speed: f64) -> Twist {
-        let body = view.world[self.target].at(view.now_us as f64 * 1e-6);
+        let Some(mover) = view.world.get(self.target) else {
+            return Twist::new(speed, 0.0);
+        };
+        let body = mover.at(view.now_us as f64 * 1e-6);
         let [x_m, y_m] = view.pose.enter([body.pose.x_m, body.pose.y_m]);
         let turn = view.episode.turn_radps;
         if view.episode.steered && x_m < 0.0 {

@@ -72,7 +72,26 @@ pub fn run(episode: &Episode, seconds: f64) -> Report {
 
 /// Runs one episode with somebody in between.
 pub fn run_with(episode: &Episode, seconds: f64, tamper: &mut dyn Tamper) -> Report {
+    drive(Loop::new(episode), seconds, tamper)
+}
+
+/// Runs one episode in a given world with somebody in between.
+pub fn run_in(
+    episode: &Episode,
+    world: Vec<Mover>,
+    seconds: f64,
+    tamper: &mut dyn Tamper,
+) -> Report {
     let mut run = Loop::new(episode);
+    run.sightings = vec![None; world.len()];
+    run.excused = vec![false; world.len()];
+    run.pilot = Pilot::new(0);
+    run.world = world;
+    drive(run, seconds, tamper)
+}
+
+fn drive(mut run: Loop<'_>, seconds: f64, tamper: &mut dyn Tamper) -> Report {
+    let episode = run.episode;
     let end_us = (seconds * 1e6) as u64;
     let mut now_us = 0;
     while now_us < end_us && !run.over {
@@ -377,7 +396,8 @@ impl<'e> Loop<'e> {
         let outline = self.episode.outline();
         let rest = truth.measured.v_mps.abs() <= self.episode.tol_v_mps + 0.005
             && truth.measured.omega_radps.abs() <= self.episode.tol_omega_radps + 0.005;
-        if rest {
+        // Where bodies may move nothing is excused.
+        if rest && self.episode.obstacle_mps <= 0.0 {
             self.rested = Some((truth.pose, allowance_m));
         }
         self.excused.fill(false);
