@@ -1,4 +1,4 @@
-//! Records what was compiled: hashes of the kernel's sources, and where the code quotes requirements.
+//! Records what was compiled: hashes of the kernel's sources, and where the code names requirements.
 //!
 //! The certificate must name the kernel that ran, not the one that lies on the disk later, so the
 //! hashes are taken when the command is built. Nothing outside the checkout is read.
@@ -7,16 +7,20 @@ use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Folders whose Rust files may quote requirements, relative to the root of the checkout.
-const QUOTING: [&str; 8] = [
+/// Folders whose Rust files may name requirements, relative to the root of the checkout.
+const NAMING: [&str; 7] = [
     "kernel/src",
     "kernel/tests",
-    "spec/src",
     "spec/tests",
-    "scenarios/src",
+    "scenarios/src/monitor",
     "scenarios/tests",
     "drives",
     "verification",
+];
+
+/// Families of requirements.
+const FAMILIES: [&str; 10] = [
+    "GUARD", "BRAKE", "LIMIT", "ZONE", "FRESH", "SILENT", "LATCH", "INPUT", "MEMORY", "TIME",
 ];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -48,33 +52,52 @@ fn write_kernel_hashes(root: &Path, out: &mut String) -> Result<(), Box<dyn std:
     Ok(())
 }
 
+/// Every place in code or tests that names a requirement; `GUARD-01..05` names five.
 fn write_citations(root: &Path, out: &mut String) -> Result<(), Box<dyn std::error::Error>> {
     let mut files = Vec::new();
-    for folder in QUOTING {
+    for folder in NAMING {
         list(root, folder, &mut files)?;
     }
     files.sort();
     files.dedup();
     out.push_str("pub const CITATIONS: &[(&str, &str, usize, bool)] = &[\n");
     for file in files.iter().filter(|file| file.ends_with(".rs")) {
+        let is_test = file.contains("/tests");
         let text = std::fs::read_to_string(root.join(file))?;
-        let lines: Vec<&str> = text.lines().map(str::trim).collect();
-        for (index, line) in lines.iter().enumerate() {
-            let Some((_, anchor)) = line
-                .strip_prefix("//= spec/")
-                .and_then(|quote| quote.split_once('#'))
-            else {
-                continue;
-            };
-            let id = anchor.trim().to_uppercase();
-            let is_test = lines
-                .get(index + 1)
-                .is_some_and(|next| next.starts_with("//= type=test"));
-            writeln!(out, "    ({id:?}, {file:?}, {}, {is_test}),", index + 1)?;
+        for (index, line) in text.lines().enumerate() {
+            for id in ids(&line.to_uppercase()) {
+                writeln!(out, "    ({id:?}, {file:?}, {}, {is_test}),", index + 1)?;
+            }
         }
     }
     out.push_str("];\n");
     Ok(())
+}
+
+/// The requirement ids in a line of upper-case text.
+fn ids(line: &str) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for family in FAMILIES {
+        for (at, _) in line.match_indices(family) {
+            let after = &line.as_bytes()[at + family.len()..];
+            let number = |bytes: &[u8]| match bytes {
+                [a, b, ..] if a.is_ascii_digit() && b.is_ascii_digit() => {
+                    Some((a - b'0') * 10 + (b - b'0'))
+                }
+                _ => None,
+            };
+            let Some(first) = after.strip_prefix(b"-").and_then(number) else {
+                continue;
+            };
+            let last = after
+                .get(3..)
+                .and_then(|rest| number(rest.strip_prefix(b"..")?));
+            found.extend((first..=last.unwrap_or(first)).map(|n| format!("{family}-{n:02}")));
+        }
+    }
+    found.sort();
+    found.dedup();
+    found
 }
 
 /// The shipped scenarios, so that the command works outside a checkout.

@@ -81,16 +81,18 @@ fn print_requirement(found: &Requirement) {
 pub fn evidence(found: &Requirement) -> Vec<String> {
     let cited = provenance::citations(found.id);
     let mut lines = Vec::new();
-    for place in &cited {
-        let how = if place.is_test {
-            "tested in"
-        } else {
-            "implemented in"
-        };
-        lines.push(format!("{how} {}:{}", place.file, place.line));
+    for (is_test, how) in [(false, "named in"), (true, "tests name it in")] {
+        let places: Vec<String> = cited
+            .iter()
+            .filter(|place| place.is_test == is_test)
+            .map(|place| format!("{}:{}", place.file, place.line))
+            .collect();
+        if !places.is_empty() {
+            lines.push(format!("{how} {}", places.join(", ")));
+        }
     }
     if !cited.iter().any(|place| place.is_test) {
-        lines.push("no test quotes it".into());
+        lines.push("no test names it".into());
     }
     let family = found.family.prefix();
     if crate::claims::MONITORED.contains(&family) {

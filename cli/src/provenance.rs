@@ -15,14 +15,14 @@ pub struct FileHash {
     pub sha256: String,
 }
 
-/// A place in the code that quotes a requirement.
+/// A place in the code that names a requirement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Citation {
     /// File from the root of the checkout.
     pub file: &'static str,
     /// Line from 1.
     pub line: usize,
-    /// Whether the place is a test of the requirement.
+    /// Whether the place is in a test.
     pub is_test: bool,
 }
 
@@ -59,7 +59,7 @@ pub fn combined(files: &[FileHash]) -> String {
     sha256(lines.as_bytes())
 }
 
-/// Where the code quotes a requirement (bare id).
+/// Where the code names a requirement (bare id).
 #[must_use]
 pub fn citations(id: &str) -> Vec<Citation> {
     CITATIONS
@@ -73,9 +73,31 @@ pub fn citations(id: &str) -> Vec<Citation> {
         .collect()
 }
 
+/// Files of tests that name a requirement of a family.
+#[must_use]
+pub fn tests_of_family(family: &str) -> Vec<&'static str> {
+    let prefix = format!("{family}-");
+    let mut files: Vec<&str> = CITATIONS
+        .iter()
+        .filter(|(id, _, _, is_test)| *is_test && id.starts_with(&prefix))
+        .map(|(_, file, ..)| *file)
+        .collect();
+    files.sort_unstable();
+    files.dedup();
+    files
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn places_that_name_a_requirement_are_found() {
+        let places = citations("ZONE-01");
+        assert!(places.iter().any(|place| place.is_test), "{places:?}");
+        assert!(places.iter().any(|place| !place.is_test), "{places:?}");
+        assert!(citations("ZONE-99").is_empty());
+    }
 
     #[test]
     fn hashes_are_those_of_the_tool_everybody_has() {

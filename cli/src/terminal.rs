@@ -106,19 +106,7 @@ pub fn summary(
         ),
     }
     say!("");
-    // What the contract does not cover was said above.
-    let shown = certificate
-        .claims
-        .iter()
-        .filter(|claim| !claim.id.starts_with("C-"));
-    for claim in shown {
-        say!(
-            "  {:<12} {}  {}",
-            claim.id,
-            status(claim.status),
-            claim.evidence.words
-        );
-    }
+    print_claims(&certificate.claims);
     for claim in &certificate.claims {
         counterexamples(claim);
     }
@@ -127,6 +115,23 @@ pub fn summary(
         say!("wrote {}", path.display());
     }
     say!("\n{}", verdict(certificate));
+}
+
+fn print_claims(claims: &[Claim]) {
+    let (unclaimed, made): (Vec<&Claim>, Vec<&Claim>) = claims
+        .iter()
+        .partition(|claim| claim.status == Status::NotClaimed);
+    for claim in made {
+        let (id, words) = (&claim.id, &claim.evidence.words);
+        say!("  {id:<12} {}  {words}", status(claim.status));
+    }
+    // What the contract does not cover was said above.
+    let names: Vec<&str> = unclaimed
+        .iter()
+        .map(|claim| claim.id.as_str())
+        .filter(|id| !id.starts_with("C-"))
+        .collect();
+    say!("  {}  {}", style("not claimed yet").dim(), names.join(", "));
 }
 
 fn status(status: Status) -> StyledObject<String> {

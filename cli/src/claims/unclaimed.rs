@@ -1,8 +1,10 @@
 //! What nobody claims yet, said as plainly as what is claimed.
 
 use super::{Claim, Evidence, Status};
+use crate::provenance;
 
-const PROPERTY: &str = "property tests in the repository, not run by this command";
+/// Stands for the tests that name requirements of the family.
+const PROPERTY: &str = "";
 
 /// Id, statement, and what there is instead of evidence.
 const PARTS: [(&str, &str, &str); 7] = [
@@ -52,9 +54,25 @@ pub fn not_claimed() -> Vec<Claim> {
             id: id.to_owned(),
             statement: statement.to_owned(),
             status: Status::NotClaimed,
-            evidence: Evidence::none(instead),
+            evidence: Evidence::none(if instead == PROPERTY {
+                property_tests(id)
+            } else {
+                instead.to_owned()
+            }),
             counterexamples: Vec::new(),
             cases: Vec::new(),
         })
         .collect()
+}
+
+/// Tests are evidence for whoever runs them; this command does not.
+fn property_tests(family: &str) -> String {
+    let files = provenance::tests_of_family(family);
+    if files.is_empty() {
+        return "no monitor here, and no test names its requirements".to_owned();
+    }
+    format!(
+        "no monitor here; `cargo test --workspace` runs property tests that name its requirements ({})",
+        files.join(", ")
+    )
 }
