@@ -28,6 +28,8 @@ pub enum Style {
     PathNaked,
     NakedBody,
     Contact,
+    ContactMoving,
+    ContactResting,
     StopMark,
     MarkText,
     Scan,
@@ -118,7 +120,7 @@ const fn text(class: &'static str, light: u32, dark: u32, size: f64) -> Look {
 
 impl Style {
     /// Every style, for writing the style sheet.
-    pub const ALL: [Self; 44] = [
+    pub const ALL: [Self; 46] = [
         Self::Paper,
         Self::Frame,
         Self::Grid,
@@ -142,6 +144,8 @@ impl Style {
         Self::PathNaked,
         Self::NakedBody,
         Self::Contact,
+        Self::ContactMoving,
+        Self::ContactResting,
         Self::StopMark,
         Self::MarkText,
         Self::Scan,
@@ -258,6 +262,18 @@ impl Style {
                 0x15_1a_21,
                 0.85,
             ),
+            Self::ContactMoving => filled(
+                stroke("hit", 0xc0_27_2d, 0xff_6b_6b, 2.2),
+                0xff_ff_ff,
+                0x15_1a_21,
+                0.85,
+            ),
+            Self::ContactResting => filled(
+                stroke("bump", 0x5b_66_75, 0x9a_a6_b5, 2.0),
+                0xff_ff_ff,
+                0x15_1a_21,
+                0.85,
+            ),
             Self::StopMark => filled(
                 stroke("mark", 0xff_ff_ff, 0x15_1a_21, 1.0),
                 0xc0_27_2d,
@@ -323,6 +339,15 @@ pub fn style_sheet() -> String {
         }
         if look.text > 0.0 {
             let _ = write!(rule, "font-size:{}px;", look.text);
+            if style != Style::MarkText {
+                // A halo of paper keeps words readable across walls and paths.
+                let (light, dark) = Style::Paper.look().fill.unwrap_or((0xff_ff_ff, 0));
+                let _ = write!(
+                    rule,
+                    "paint-order:stroke;stroke-width:3px;stroke-linejoin:round;stroke:#{light:06x};"
+                );
+                let _ = write!(dark_rule, "stroke:#{dark:06x};");
+            }
         }
         let _ = writeln!(sheet, ".hl .{class}{{{rule}}}");
         let _ = writeln!(dark, ".hl .{class}{{{dark_rule}}}");

@@ -87,6 +87,15 @@ fn print_summary(
          not checked\nagainst the decisions, and a stop is released once the kernel itself has come to rest.\n"
     );
     print_counts(judged);
+    if judged
+        .iter()
+        .any(|verdict| verdict.refusal.as_deref() == Some("unknown_space"))
+    {
+        say!(
+            "\nunknown space: nobody has looked there, or not lately; a ray without a valid return says nothing, \
+             and\nwhat is unknown counts as occupied"
+        );
+    }
     print_events(events);
     print_times(judged);
 }

@@ -62,7 +62,6 @@ pub fn ask_guard(kernel: &Shadow, moment: &Moment) -> Judged {
         pose,
         stamp: odometry.stamp,
         odometer: track.odometer(),
-        skirt_um: u64::from(config.config().memory.skirt.as_um().unsigned_abs()),
         excuse: (rests(moment.told)).then(haltline::guard::check::Excuse::default),
     };
     let mut refused: Option<Verdict> = None;

@@ -94,7 +94,7 @@ fn legend(page: &mut String) {
              d=\"M1 6L25 6\"/></svg>{label}</span>"
         );
     }
-    page.push_str("<span>⊗ contact</span><span>❶ robot came to rest</span><span>▶ click on a picture to play it</span></div>\n");
+    page.push_str("<span>⊗ contact: of the naked twin; grey: a body ran into the resting robot; red: while moving</span><span>❶ robot came to rest</span><span>▶ click on a picture to play it</span></div>\n");
 }
 
 /// The verdict on a run or a sweep.
@@ -158,8 +158,12 @@ fn facts(page: &mut String, case: &CaseResult) {
         ));
     }
     facts.push(("contacts while moving", run.moving_contacts().to_string()));
-    if let Some(gap) = words::nearest(run) {
-        facts.push(("nearest", gap));
+    if let Some(gap_m) = run.min_clearance_moving_m {
+        facts.push(("nearest while moving", words::metres(gap_m)));
+    }
+    let bumps = run.contacts.len() - run.moving_contacts();
+    if bumps > 0 {
+        facts.push(("bodies that ran into the resting robot", bumps.to_string()));
     }
     let twin = match case.naked.as_ref().map(|naked| naked.contacts.first()) {
         Some(Some(contact)) => format!("touches {} at {:.1} s", contact.body, contact.t_s),

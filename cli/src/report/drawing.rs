@@ -9,7 +9,7 @@ use super::words;
 use crate::picture::plot::{self, Plot};
 use crate::picture::view::{Pose, View, bounds, outline};
 use crate::picture::{Picture, Style};
-use course::{draw_cross, draw_ends, draw_path, draw_stops, draw_swept};
+use course::{draw_contacts, draw_ends, draw_path, draw_stops, draw_swept};
 use haltline_scenarios::result::{
     CaseResult, FootprintRecord, PoseRecord, RunResult, Sample, ShapeRecord,
 };
@@ -166,9 +166,7 @@ fn draw_map(
         draw_stops(picture, run, &case.footprint, view);
         draw_scale(picture, view);
     }
-    for contact in &run.contacts {
-        draw_cross(picture, view.at([contact.pose.x_m, contact.pose.y_m]));
-    }
+    draw_contacts(picture, run, view);
 }
 
 /// The time at which moving bodies are drawn: when the robot was nearest to something.

@@ -60,8 +60,8 @@ pub fn outcome(case: &CaseResult) -> String {
     } else {
         format!("still moving after {:.1} s", run.time_s)
     };
-    match nearest(run) {
-        Some(gap) => format!("{end}, nearest {gap}"),
+    match run.min_clearance_moving_m.map(metres) {
+        Some(gap) => format!("{end}, nearest while moving {gap}"),
         None => end,
     }
 }

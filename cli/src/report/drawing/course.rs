@@ -120,8 +120,21 @@ pub(super) fn draw_stops(
 }
 
 /// A contact.
-pub(super) fn draw_cross(picture: &mut Picture, [x, y]: [f64; 2]) {
-    picture.circle([x, y], 6.5, Style::Contact);
-    picture.line(vec![[x - 3.5, y - 3.5], [x + 3.5, y + 3.5]], Style::Contact);
-    picture.line(vec![[x - 3.5, y + 3.5], [x + 3.5, y - 3.5]], Style::Contact);
+pub(super) fn draw_cross(picture: &mut Picture, [x, y]: [f64; 2], style: Style) {
+    picture.circle([x, y], 6.5, style);
+    picture.line(vec![[x - 3.5, y - 3.5], [x + 3.5, y + 3.5]], style);
+    picture.line(vec![[x - 3.5, y + 3.5], [x + 3.5, y - 3.5]], style);
+}
+
+/// The contacts of the subject: whether it moved decides whether the claim is at stake.
+pub(super) fn draw_contacts(picture: &mut Picture, run: &RunResult, view: &View) {
+    for contact in &run.contacts {
+        let style = match (run.guarded, contact.robot_moving) {
+            (false, _) => Style::Contact,
+            (true, true) => Style::ContactMoving,
+            (true, false) => Style::ContactResting,
+        };
+        let at = view.at([contact.pose.x_m, contact.pose.y_m]);
+        draw_cross(picture, at, style);
+    }
 }

@@ -146,6 +146,6 @@ pub(super) fn draw_naked(
                 Style::NakedBody,
             );
         }
-        draw_cross(picture, view.at([at[0], at[1]]));
+        draw_cross(picture, view.at([at[0], at[1]]), Style::Contact);
     }
 }
