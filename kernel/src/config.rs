@@ -177,7 +177,8 @@ pub struct MemoryRules {
     pub age_max: Duration,
     /// Radius around the rotation centre that the operator vouches for at a reset.
     pub clear_at_start: Length,
-    /// Margin around the resting footprint in which unseen space does not block (printed assumption).
+    /// Margin around the footprint that the operator vouches for at a reset, beyond the disc
+    /// (printed assumption).
     pub skirt: Length,
     /// Bodies at least this wide are seen (assumption A-WIDTH).
     pub body_width_min: Length,

@@ -130,7 +130,6 @@ impl Setup {
             pose: LocalPose::default(),
             stamp: Instant::from_us(1_020_000),
             odometer: Odometer::default(),
-            skirt_um: 50_000,
             excuse: None,
         };
         certify(self.config.tube(), &self.hull, 142_000, &scene)

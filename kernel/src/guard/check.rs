@@ -9,8 +9,9 @@ use crate::geometry::rect::Rect;
 const EXTRA_MAX_MM: u16 = 1_200;
 /// What rounding may do to a distance comparison, eighths of a millimetre.
 ///
-/// Small on purpose: it could be spent once per tick. The critical zone bounds what is left.
-const NEARER_SLACK: u64 = 3;
+/// It can be spent once per departure, since the place of rest is the reference; the critical
+/// zone bounds what many departures add up to.
+const NEARER_SLACK: u64 = 16;
 
 /// A known point in the body frame at the tube's start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -147,8 +148,8 @@ pub struct Excuse {
 }
 
 impl Excuse {
-    /// Squared distance of the footprint at the start from an excused segment; `None` if the
-    /// segment is not excused.
+    /// Squared distance of the footprint where the robot rested from an excused segment, which no
+    /// sample may undercut; `None` if the segment is not excused.
     fn distance(
         &self,
         tube: &Tube,
@@ -162,8 +163,6 @@ impl Excuse {
         if !rested.rect.grown(extra).touches(a, b) {
             return None;
         }
-        let a = tube.start.enter(start.point())?;
-        let b = tube.start.enter(end.point())?;
         let distance = footprint.segment_distance_squared(a, b);
         (distance > 0).then_some(distance)
     }
@@ -178,9 +177,10 @@ impl Excuse {
                 let extra = eighths_up(u64::from(point.extra_mm).saturating_mul(1000));
                 let seen = tube.start.enter(point.point())?;
                 let inside = tube.start.rect.grown(extra).contains(seen);
-                inside
-                    .then(|| self.distance(tube, footprint, point, point, extra))
-                    .flatten()
+                let excused = self
+                    .distance(tube, footprint, point, point, extra)
+                    .is_some();
+                (inside && excused).then(|| footprint.distance_squared(seen))
             })
             .min()
     }

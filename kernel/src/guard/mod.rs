@@ -112,8 +112,6 @@ pub struct Scene<'a, const S: usize, const B: usize, const M: usize> {
     pub stamp: Instant,
     /// Odometer at that pose.
     pub odometer: Odometer,
-    /// Margin around the resting footprint in which unknown space does not block, µm.
-    pub skirt_um: u64,
     /// Present while the robot leaves rest: points inside the inflation where it rested block
     /// only motions that bring it nearer.
     pub excuse: Option<check::Excuse>,
@@ -150,13 +148,7 @@ pub fn certify<const S: usize, const B: usize, const M: usize>(
             return Verdict::of(&tube, Some(Refusal::KnownPoint), Some(touch.point), budget);
         }
     }
-    let unknown = unknown::entered(
-        &tube,
-        parameters.footprint,
-        scene.skirt_um,
-        &scene.memory.seen,
-        scene.pose,
-    );
+    let unknown = unknown::entered(&tube, parameters.footprint, &scene.memory.seen, scene.pose);
     let refusal = unknown.map(|_| Refusal::UnknownSpace);
     let mut budget = tube
         .samples()

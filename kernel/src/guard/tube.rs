@@ -330,6 +330,15 @@ fn joined(a: Rect, b: Rect) -> Rect {
 }
 
 impl Sample {
+    /// `rect` around the body itself.
+    #[must_use]
+    pub fn at_rest(rect: Rect) -> Self {
+        Self {
+            rect,
+            ..Self::default()
+        }
+    }
+
     /// A rectangle standing at `there`, seen from a body at `here`.
     #[must_use]
     pub fn seen_from(here: LocalPose, there: LocalPose, rect: Rect) -> Self {

@@ -15,24 +15,16 @@ const WINDOW: i32 = 128 << 8;
 /// The centre of an unknown cell that `tube` enters, if any (body frame).
 ///
 /// A cell counts if its centre lies in a sample grown by everything except obstacle
-/// motion and sensor terms, but not in the resting footprint grown by the same and the skirt.
+/// motion and sensor terms, but not in the footprint at the start grown by the same: there the
+/// robot stands, and the tube's own width there is no news. (A wider excuse would travel with the
+/// robot, and a slow one would never meet unknown space.)
 /// # Bound
 /// O(samples × rows of the window).
 /// # Source
 /// GUARD-02; spec/model.md "Unknown space".
 #[must_use]
-pub fn entered(
-    tube: &Tube,
-    footprint: Rect,
-    skirt_um: u64,
-    seen: &Seen,
-    pose: LocalPose,
-) -> Option<BodyPoint> {
-    let place = Placement {
-        rotation: Rotation::new(pose.heading),
-        pose,
-        seen,
-    };
+pub fn entered(tube: &Tube, footprint: Rect, seen: &Seen, pose: LocalPose) -> Option<BodyPoint> {
+    let place = Placement::new(pose, seen);
     let samples = tube.samples();
     let last = samples.last()?;
     let step = tube
@@ -49,9 +41,7 @@ pub fn entered(
             .max(1)
     };
     let mut excused: Rows = [0; CELLS];
-    let resting = footprint.grown(eighths_up(
-        growth_um(tube, last, stride).saturating_add(skirt_um),
-    ));
+    let resting = footprint.grown(eighths_up(growth_um(tube, last, stride)));
     place.fill(&mut excused, tube.start.corners(resting));
     let strided = samples.iter().skip(1).step_by(stride);
     let mut rows: Rows = [0; CELLS];
@@ -91,13 +81,21 @@ fn body_point(eighths: PointMm) -> BodyPoint {
 }
 
 /// The body frame inside the window of cells.
-struct Placement<'a> {
+pub(super) struct Placement<'a> {
     rotation: Rotation,
     pose: LocalPose,
     seen: &'a Seen,
 }
 
-impl Placement<'_> {
+impl<'a> Placement<'a> {
+    pub(super) fn new(pose: LocalPose, seen: &'a Seen) -> Self {
+        Self {
+            rotation: Rotation::new(pose.heading),
+            pose,
+            seen,
+        }
+    }
+
     /// `corner` (body frame, eighths) in eighths from the anchor.
     fn in_odometry(&self, corner: PointMm) -> (i64, i64) {
         let scaled = self.rotation.apply(corner);
@@ -109,7 +107,7 @@ impl Placement<'_> {
     }
 
     /// Marks the cells whose centre lies in the convex polygon; returns the rows to look at.
-    fn fill(&self, rows: &mut Rows, corners: [PointMm; 4]) -> core::ops::Range<usize> {
+    pub(super) fn fill(&self, rows: &mut Rows, corners: [PointMm; 4]) -> core::ops::Range<usize> {
         let points = corners.map(|corner| {
             let (x, y) = self.in_odometry(corner);
             self.seen.cell_point_eighths(x, y)

@@ -208,6 +208,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         };
         let (stamp, odometer) = (newest.stamp, self.track.odometer());
         self.memory.age(self.config.memory(), stamp, odometer);
+        self.memory.occupy(pose, self.config.tube().footprint);
         self.memory
             .refresh(self.config.memory(), pose, stamp, odometer);
     }

@@ -11,6 +11,7 @@ use crate::checked::{ConfigError, KernelConfig};
 use crate::config::Config;
 use crate::decision::{Action, Decision, Reason, StopStatus};
 use crate::guard::memory::Memory;
+use crate::guard::tube::eighths_up;
 use crate::guard::{Leave, Refusal, Verdict};
 use crate::input::{Beam, Command, Inputs};
 use crate::odometry::{LocalPose, Track};
@@ -188,8 +189,11 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         self.stop = stop::next(before, events, times);
         let released = self.stop.mode == Mode::Running && before.mode == Mode::Latched;
         if let (true, Some(pose)) = (released, self.track.pose()) {
-            let radius = self.config.config().memory.clear_at_start.as_um() / 1000;
-            self.memory.vouch(pose, radius);
+            let rules = &self.config.config().memory;
+            self.memory.vouch(pose, rules.clear_at_start.as_um() / 1000);
+            let skirt = eighths_up(u64::from(rules.skirt.as_um().unsigned_abs()));
+            self.memory
+                .occupy(pose, self.config.tube().footprint.grown(skirt));
         }
     }
 

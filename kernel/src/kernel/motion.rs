@@ -200,7 +200,6 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             pose: self.track.pose().unwrap_or_default(),
             stamp: odometry.stamp,
             odometer: self.track.odometer(),
-            skirt_um: u64::from(self.config.config().memory.skirt.as_um().unsigned_abs()),
             excuse: self.excuse(),
         };
         certify(

@@ -97,7 +97,6 @@ fn reserve(config: &KernelConfig<SCANNERS>, steady: &Steady) -> Option<Verdict> 
         pose: LocalPose::default(),
         stamp: Instant::default(),
         odometer: Odometer::default(),
-        skirt_um: 0,
         excuse: None,
     };
     let mut hull = Hull::default();

@@ -98,7 +98,7 @@ pub(super) const MEMORY: &[Key] = &[
         "skirt_m",
         NonNegative(1.0),
         "0.050",
-        "Margin around the resting footprint in which unseen space does not block.",
+        "Margin around the footprint that the operator vouches for at a reset, beyond the disc.",
     ),
     key(
         "body_width_min_m",

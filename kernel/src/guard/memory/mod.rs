@@ -17,6 +17,9 @@ use super::sweep::{Sight, Sweep, SweepPoint, SweepRules};
 use crate::arith::{mul_div_up, mul_micro_up};
 use crate::config::Scanner;
 use crate::geometry::frame::{PointMm, polar};
+use crate::geometry::rect::Rect;
+use crate::guard::tube::Sample;
+use crate::guard::unknown::Placement;
 use crate::input::Beam;
 use crate::odometry::{AnchorShift, LocalPose, Odometer};
 use crate::time::Instant;
@@ -280,6 +283,14 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
         );
         self.seen.expire(now, model.age_max);
         self.eroded_at = (now, odometer);
+    }
+
+    /// Marks the place of the robot's own body, `outline` in eighths of a millimetre, as known:
+    /// nothing else can be there.
+    pub fn occupy(&mut self, pose: LocalPose, outline: Rect) {
+        let mut rows: Rows = [0; CELLS];
+        Placement::new(pose, &self.seen).fill(&mut rows, Sample::at_rest(outline).corners(outline));
+        self.seen.mark(&rows);
     }
 
     /// Takes the operator's word that the disc of `radius_mm` around the robot is free
