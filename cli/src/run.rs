@@ -196,7 +196,7 @@ fn print_summary(case: &Case, done: &CaseRun, naked: bool) {
         let gap = stop.clearance_m.map_or(String::new(), |gap| {
             format!(", {} left", words::metres(gap))
         });
-        let why = words::why_stopped(&stop.decision, &stop.reason);
+        let why = words::why_stopped(run, stop);
         say!("    {:.2} s  {why}{gap}", stop.t_s);
     }
     for broken in &run.assumptions_broken {

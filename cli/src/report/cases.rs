@@ -193,7 +193,7 @@ fn stops(page: &mut String, case: &CaseResult) {
             page,
             "<li>{:.1} s: {}{}</li>",
             stop.t_s,
-            escape(&words::why_stopped(&stop.decision, &stop.reason)),
+            escape(&words::why_stopped(&case.guarded, stop)),
             escape(&gap)
         );
     }

@@ -1,6 +1,6 @@
 //! The whole page from made-up runs: it must stand alone, be well-formed and come out the same twice.
 
-use super::page;
+use super::{page, words};
 use crate::certificate::{Certificate, Parts};
 use crate::claims::{self, Replay, Status};
 use haltline_robots::Robot;
@@ -249,6 +249,30 @@ fn every_link_in_the_page_has_its_target() {
         targets += 1;
     }
     assert!(targets > 20, "only {targets} links");
+}
+
+#[test]
+fn a_rest_is_explained_by_the_objection_just_before() {
+    let mut run = run(true, 3.2);
+    let mut stop = run.stops[0].clone();
+    assert_eq!(
+        words::why_stopped(&run, &stop),
+        "critical zone (protective stop)"
+    );
+    (stop.decision, stop.reason) = ("Pass".into(), "None".into());
+    run.decisions[3].t_s = 4.2;
+    run.decisions.push(DecisionChange {
+        t_s: 4.3,
+        decision: "Pass".into(),
+        reason: "None".into(),
+        ..run.decisions[0].clone()
+    });
+    assert_eq!(
+        words::why_stopped(&run, &stop),
+        "critical zone (protective stop)"
+    );
+    stop.t_s = 6.0;
+    assert_eq!(words::why_stopped(&run, &stop), "as commanded");
 }
 
 #[test]

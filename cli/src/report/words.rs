@@ -1,7 +1,7 @@
 //! The same words everywhere: terminal, report and certificate.
 
 use crate::picture::Style;
-use haltline_scenarios::result::{CaseResult, RunResult};
+use haltline_scenarios::result::{CaseResult, DecisionChange, RunResult, Stop};
 
 /// A name of the kernel, in whichever case it was written, as `snake_case`.
 #[must_use]
@@ -22,16 +22,40 @@ pub fn reason(word: &str) -> String {
     snake(word).replace('_', " ")
 }
 
+/// Longest time for which an objection still explains a rest, seconds.
+const AFTERMATH_S: f64 = 0.5;
+
 /// Why the robot came to rest, as people say it.
+///
+/// A guard that lets a braking robot creep on for a tick passes that tick; what stopped the robot is
+/// the objection just before.
 #[must_use]
-pub fn why_stopped(decision: &str, why: &str) -> String {
-    match (snake(decision).as_str(), snake(why).as_str()) {
-        ("pass" | "naked", "none") => "as commanded".to_owned(),
-        ("protective_stop" | "emergency_stop", _) => {
-            format!("{} ({})", reason(why), reason(decision))
-        }
+pub fn why_stopped(run: &RunResult, stop: &Stop) -> String {
+    let in_words = |decision: &str, why: &str| match snake(decision).as_str() {
+        "protective_stop" | "emergency_stop" => format!("{} ({})", reason(why), reason(decision)),
         _ => reason(why),
+    };
+    if snake(&stop.reason) != "none" {
+        return in_words(&stop.decision, &stop.reason);
     }
+    let before: Vec<&DecisionChange> = run.decisions.iter().filter(|d| d.t_s <= stop.t_s).collect();
+    // Each decision was in force until the next one came.
+    let mut end_s = stop.t_s;
+    let mut objection = None;
+    for decision in before.into_iter().rev() {
+        if stop.t_s - end_s > AFTERMATH_S {
+            break;
+        }
+        if snake(&decision.reason) != "none" {
+            objection = Some(decision);
+            break;
+        }
+        end_s = decision.t_s;
+    }
+    objection.map_or_else(
+        || "as commanded".to_owned(),
+        |decision| in_words(&decision.decision, &decision.reason),
+    )
 }
 
 /// How the path looks under a decision.
@@ -100,7 +124,6 @@ mod tests {
     fn names_of_the_kernel_read_the_same_in_either_case() {
         assert_eq!(reason("CriticalZone"), "critical zone");
         assert_eq!(reason("critical_zone"), "critical zone");
-        assert_eq!(why_stopped("Pass", "None"), "as commanded");
         assert_eq!(path_style("ProtectiveStop"), Style::PathStop);
     }
 

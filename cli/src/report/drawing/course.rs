@@ -105,15 +105,17 @@ pub(super) fn draw_stops(
             number.to_string(),
         );
         if count < 3 {
-            let text = format!(
-                "{} at {:.1} s",
-                words::why_stopped(&stop.decision, &stop.reason),
-                stop.t_s
-            );
-            // Above the footprint, inside the picture.
+            let text = format!("{} at {:.1} s", words::why_stopped(run, stop), stop.t_s);
+            // By turns above and below the footprint, inside the picture.
             let corners = view.all(&body_outline(footprint, pose(&stop.pose)));
-            let top = corners.iter().map(|corner| corner[1]).fold(y, f64::min);
-            let at = [x.clamp(70.0, WIDTH - 70.0), (top - 6.0).max(12.0)];
+            let heights = corners.iter().map(|corner| corner[1]);
+            let line = if count % 2 == 0 {
+                heights.fold(y, f64::min) - 6.0
+            } else {
+                heights.fold(y, f64::max) + 14.0
+            };
+            let half = 3.0 * text.chars().count() as f64;
+            let at = [x.clamp(half, WIDTH - half), line.max(12.0)];
             picture.text(at, Anchor::Middle, Style::Label, text);
         }
     }
