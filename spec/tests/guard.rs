@@ -20,12 +20,7 @@ const ALL: [Style; 5] = [
 ];
 
 fn truthful(name: &str, cases: u32, styles: &[Style], moving: bool, change: fn(&mut Episode)) {
-    // Without optimisation a quarter, so that a debug run ends in reasonable time.
-    let cases = if cfg!(debug_assertions) {
-        cases / 4
-    } else {
-        cases
-    };
+    let cases = common::cases(cases);
     let total = RefCell::new(Report::default());
     let strategy = episodes(styles.to_vec(), moving).prop_map(move |mut episode| {
         change(&mut episode);

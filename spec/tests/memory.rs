@@ -198,6 +198,10 @@ fn turning_blind(lie: Lie, cases: u32, drift: f64) -> (usize, usize, Vec<String>
     let (accepted, refused) = (Cell::new(0), Cell::new(0));
     let contacts = RefCell::new(Vec::new());
     check(cases, &strategy, |episode| {
+        // One contact shows what is to be shown.
+        if !contacts.borrow().is_empty() {
+            return Ok(());
+        }
         let report = run(&episode, 12.0);
         accepted.set(accepted.get() + report.accepted);
         refused.set(refused.get() + report.refused);
@@ -214,7 +218,7 @@ fn turning_blind(lie: Lie, cases: u32, drift: f64) -> (usize, usize, Vec<String>
 //# since it was seen.
 #[test]
 fn turns_beside_what_is_out_of_sight_touch_nothing() {
-    let (accepted, refused, contacts) = turning_blind(Lie::None, 30, 0.05);
+    let (accepted, refused, contacts) = turning_blind(Lie::None, common::cases(30), 0.05);
     println!("blind turns: {accepted} accepted, {refused} refused");
     assert!(accepted > 500 && refused > 50);
     assert_eq!(contacts.first(), None);
@@ -222,7 +226,7 @@ fn turns_beside_what_is_out_of_sight_touch_nothing() {
 
 #[test]
 fn false_twin_that_trusts_its_odometry() {
-    let (accepted, _, contacts) = turning_blind(Lie::Drift, 60, 0.15);
+    let (accepted, _, contacts) = turning_blind(Lie::Drift, 90, 0.3);
     println!(
         "false twin Drift: {accepted} accepted, {} contacts",
         contacts.len()
