@@ -150,6 +150,11 @@ fn contract_claim(robot: &Robot, contract: &Contract) -> Claim {
         })
         .collect();
     let holding = contract.checks.iter().filter(|check| check.holds()).count();
+    let uncovered = contract
+        .checks
+        .iter()
+        .filter(|check| check.finding == Finding::NotCovered)
+        .count();
     Claim {
         id: "CONTRACT".to_owned(),
         statement: "The limits of the robot file are consistent: it can stop within what it sees."
@@ -160,7 +165,7 @@ fn contract_claim(robot: &Robot, contract: &Contract) -> Claim {
             (true, _) => Status::Holds,
         },
         evidence: Evidence::computed(format!(
-            "computed from the robot file ({holding} of {} checks hold)",
+            "computed from the robot file ({} checks: {holding} hold, {uncovered} not covered)",
             contract.checks.len()
         )),
         counterexamples,

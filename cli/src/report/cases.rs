@@ -197,10 +197,14 @@ fn stops(page: &mut String, case: &CaseResult) {
             escape(&gap)
         );
     }
-    if stops.len() > SHOWN {
-        let _ = write!(page, "<li class=\"soft\">… {} in all</li>", stops.len());
-    }
     page.push_str("</ol>");
+    if stops.len() > SHOWN {
+        let _ = write!(
+            page,
+            "<p class=\"small soft\">{} stops in all</p>",
+            stops.len()
+        );
+    }
 }
 
 fn failure_or_details(page: &mut String, case: &CaseResult, record: &CaseRecord) {
