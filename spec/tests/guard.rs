@@ -111,6 +111,18 @@ fn separate_ramps() {
     });
 }
 
+//= spec/guard.md#guard-12
+//= type=test
+//# With host death covered, the tube MUST contain every trajectory in which the drive goes on until its watchdog time
+//# has passed since it received the last decision and then brakes by itself.
+#[test]
+fn host_death_covered() {
+    truthful("host death", 60, &ALL, false, |episode| {
+        episode.steered = false;
+        episode.watchdog_ms = Some(300);
+    });
+}
+
 /// A lie of the given kind must lead to contacts, or the tests above show nothing.
 fn twin(lie: Lie, cases: u32, moving: bool, change: fn(&mut Episode)) {
     let total = RefCell::new(Report::default());
@@ -184,4 +196,5 @@ fn false_twins() {
         e.harder = 1.0;
     });
     twin(Lie::Footprint, 20, false, |_| {});
+    twin(Lie::HostDeath, 20, false, |e| e.watchdog_ms = Some(300));
 }

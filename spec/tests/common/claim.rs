@@ -68,7 +68,10 @@ pub fn in_play(log: &[(f64, SetPoint)], since_s: f64) -> &[(f64, SetPoint)] {
 impl Step {
     /// The motions this step allows.
     pub fn manoeuvre(&self, episode: &Episode) -> Manoeuvre {
-        let tick_s = (episode.period_ms + episode.jitter_ms + episode.latency_ms) as f64 * 1e-3;
+        // After the last decision the host may be silent until the drive's watchdog bites.
+        let silence_ms =
+            (episode.period_ms + episode.jitter_ms).max(episode.watchdog_ms.unwrap_or(0));
+        let tick_s = (silence_ms + episode.latency_ms) as f64 * 1e-3;
         Manoeuvre {
             reach: self.reach(episode),
             tol_v_mps: episode.tol_v_mps,
@@ -82,7 +85,7 @@ impl Step {
                 } else {
                     episode.angular_braking_radps2
                 },
-                separate: episode.separate,
+                separate: episode.separate || episode.watchdog_ms.is_some(),
             },
         }
     }

@@ -1,8 +1,8 @@
 //! One random robot in one random world, told truthfully or with one lie to the kernel.
 
 use haltline::config::{
-    Config, Footprint, Kinematics, Limits, MASKS_MAX, MemoryRules, Ramps, Scanner, Timing,
-    Tolerances, ZoneMargins,
+    Config, Footprint, HostDeath, Kinematics, Limits, MASKS_MAX, MemoryRules, Ramps, Scanner,
+    Timing, Tolerances, ZoneMargins,
 };
 use haltline::convert::{self, Round};
 use haltline::time::Duration;
@@ -76,6 +76,8 @@ pub enum Lie {
     Drift,
     /// There is no critical zone.
     Zone,
+    /// The host never dies.
+    HostDeath,
     /// One scan that looks past a point clears it.
     ClearAfter,
 }
@@ -112,6 +114,8 @@ pub struct Episode {
     pub thin: bool,
     /// Margins of the critical zone: in front, elsewhere.
     pub zone_m: [f64; 2],
+    /// The drive's watchdog time, if the tube is to cover the host's death.
+    pub watchdog_ms: Option<u64>,
 }
 
 prop_compose! {
@@ -158,6 +162,7 @@ prop_compose! {
             bodies,
             thin: flags[2],
             zone_m: [0.01, 0.005],
+            watchdog_ms: None,
         }
     }
 }
@@ -293,7 +298,11 @@ impl Episode {
                 body_width_min: up_um(0.06),
             },
             obstacle_speed: convert::speed(self.obstacle_mps, Round::Up).unwrap(),
-            host_death: None,
+            host_death: self.watchdog_ms.map(|watchdog| HostDeath {
+                watchdog: ms(watchdog),
+                braking: self.limits().braking,
+                angular_braking: self.limits().angular_braking,
+            }),
         }
     }
 
@@ -437,6 +446,7 @@ impl Episode {
                 config.tolerances.odometry_linear = exact;
                 config.tolerances.odometry_angular = exact;
             }
+            Lie::HostDeath => config.host_death = None,
             Lie::Zone => config.zone = ZoneMargins::default(),
             Lie::ClearAfter => config.memory.clear_after_scans = 1,
             Lie::Footprint => {
