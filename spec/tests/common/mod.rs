@@ -2,6 +2,7 @@
 
 #![allow(dead_code)] // Every test file uses its own part.
 
+pub mod account;
 pub mod claim;
 pub mod episode;
 pub mod faults;
@@ -11,6 +12,7 @@ pub mod report;
 pub mod rules;
 pub mod run;
 pub mod tamper;
+pub mod told;
 pub mod wire;
 
 use episode::Episode;
