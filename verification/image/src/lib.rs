@@ -96,7 +96,12 @@ pub extern "C" fn image_beam(range_m: f32, encoding: u8, min: i32, max: i32, out
         1 => BeamEncoding::ZeroIsNone,
         _ => BeamEncoding::ZeroIsInvalid,
     };
-    *out = convert::beam(range_m, encoding, Length::from_um(min), Length::from_um(max));
+    *out = convert::beam(
+        range_m,
+        encoding,
+        Length::from_um(min),
+        Length::from_um(max),
+    );
 }
 
 /// The negative control: an index that may be out of range.
