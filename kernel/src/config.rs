@@ -1,6 +1,6 @@
 //! The robot as the safety core sees it, and the one place where it can be refused.
 //!
-//! [`Config`] is plain data; [`KernelConfig`] is a `Config` that passed every check.
+//! [`Config`] is plain data; [`crate::checked::KernelConfig`] is a `Config` that passed every check.
 
 use crate::time::Duration;
 use crate::units::{

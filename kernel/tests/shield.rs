@@ -59,3 +59,20 @@ fn turns_on_the_spot_where_there_is_room_and_not_where_there_is_none() {
     }
     assert!(narrow.pose[2] < 0.2, "{:?}", narrow.pose);
 }
+
+/// GUARD-02: nobody looks behind, so reversing ends where the operator's word ends.
+#[test]
+fn reverses_no_farther_than_the_vouched_area() {
+    for speed in [-0.03, -0.1, -0.5] {
+        let mut config = config();
+        config.limits.speed_reverse = config.limits.speed_forward;
+        let mut room = Room::new((-20.0, 6.0), (-2.0, 2.0), config);
+        let _ = room.start();
+        for _ in 0..1500 {
+            let _ = room.tick(Some((speed, 0.0)), false);
+        }
+        // 1.2 m around the centre, 0.6 m to the rear edge, and at most a cell.
+        assert!(room.pose[0] > -0.6 - 0.064, "at {speed}: {:?}", room.pose);
+        assert!(room.pose[0] < -0.4, "at {speed}: {:?}", room.pose);
+    }
+}

@@ -77,10 +77,15 @@ impl Plan {
         let tolerance = i64::try_from(dynamics.speed_tolerance).unwrap_or(i64::MAX);
         let forward = i64::from(slowest) >= tolerance.saturating_neg();
         let backward = i64::from(fastest) <= tolerance;
-        if forward && backward && !dynamics.steered {
+        // Within the tolerance both hold. What creeps is still judged along its way, or it would
+        // creep into unknown space unseen; what mainly turns is judged as turning.
+        let creep = magnitude(slowest).max(magnitude(fastest));
+        let corner_speed = mul_micro_up(hull.turn_max(), dynamics.corner);
+        if forward && backward && !dynamics.steered && corner_speed >= creep {
             return Ok(Self::on_the_spot(dynamics, hull, reaction_us));
         }
-        if forward {
+        let rather_back = backward && magnitude(slowest) > magnitude(fastest);
+        if forward && !rather_back {
             Ok(Self::driving(dynamics, hull, reaction_us, 1))
         } else if backward {
             Ok(Self::driving(dynamics, &hull.mirrored(), reaction_us, -1))

@@ -9,59 +9,82 @@ use crate::odometry::LocalPose;
 
 /// Samples nearer to each other than this are tested once, µm.
 const STRIDE_UM: u64 = 32_000;
+/// Path in µm for each eighth of a millimetre by which a cell may come nearer: one in 64. A robot
+/// that swings its tail by less does not enter anything new.
+const SLACK_UM: u64 = 8_000;
 /// Edge of the window in 1/256 cells.
 const WINDOW: i32 = 128 << 8;
 
 /// The centre of an unknown cell that `tube` enters, if any (body frame).
 ///
-/// A cell counts if its centre lies in a sample grown by everything except obstacle
-/// motion and sensor terms, but not in the footprint at the start grown by the same: there the
-/// robot stands, and the tube's own width there is no news. (A wider excuse would travel with the
-/// robot, and a slow one would never meet unknown space.)
+/// A cell counts if its centre lies in a sample grown by everything except obstacle motion and
+/// sensor terms, and the nominal footprint is nearer to it there than at the start: what lies
+/// beside or behind a robot that drives straight on is no news. (An excused *region* would travel
+/// with the robot, and a slow one would never meet unknown space.)
 /// # Bound
-/// O(samples × rows of the window).
+/// O(samples × cells of a grown footprint).
 /// # Source
 /// GUARD-02; spec/model.md "Unknown space".
 #[must_use]
 pub fn entered(tube: &Tube, footprint: Rect, seen: &Seen, pose: LocalPose) -> Option<BodyPoint> {
     let place = Placement::new(pose, seen);
     let samples = tube.samples();
-    let last = samples.last()?;
-    let step = tube
-        .plan
-        .path
-        .checked_div(samples.len() as u64)
-        .unwrap_or(0)
-        .max(1);
-    let stride = if tube.plan.path == 0 {
-        1
-    } else {
-        usize::try_from(STRIDE_UM.checked_div(step).unwrap_or(1))
-            .unwrap_or(1)
-            .max(1)
-    };
-    let mut excused: Rows = [0; CELLS];
-    let resting = footprint.grown(eighths_up(growth_um(tube, last, stride)));
-    place.fill(&mut excused, tube.start.corners(resting));
-    let strided = samples.iter().skip(1).step_by(stride);
+    let last = samples.len().saturating_sub(1);
+    let stride = stride(tube);
     let mut rows: Rows = [0; CELLS];
-    for sample in strided.chain(core::iter::once(last)) {
+    for (number, sample) in samples.iter().enumerate().skip(tube.nominal_from) {
+        if number.checked_rem(stride) != Some(0) && number != last {
+            continue;
+        }
         let rect = footprint.grown(eighths_up(growth_um(tube, sample, stride)));
         let span = place.fill(&mut rows, sample.corners(rect));
         if !place.inside(sample.corners(rect)) {
             return Some(body_point(sample.centre));
         }
+        let path_um = step_um(tube).saturating_mul(number as u64);
+        let slack = path_um.checked_div(SLACK_UM).unwrap_or(0).saturating_add(1);
         for row in span {
             // Leaves the row empty for the next sample.
-            let wanted = rows.get_mut(row).map_or(0, core::mem::take);
-            let free = seen.known(row) | excused.get(row).copied().unwrap_or(0);
-            let unknown = wanted & !free;
-            if unknown != 0 {
-                return Some(place.cell_in_body(unknown.trailing_zeros(), row));
+            let mut unknown = rows.get_mut(row).map_or(0, core::mem::take) & !seen.known(row);
+            while unknown != 0 {
+                let cell = place.cell_in_body(unknown.trailing_zeros(), row);
+                if comes_nearer(footprint, sample, cell, slack) {
+                    return Some(cell);
+                }
+                unknown &= unknown.wrapping_sub(1);
             }
         }
     }
     None
+}
+
+/// Whether the nominal footprint at `sample` is nearer to `cell` than at the start, by more than
+/// `slack` eighths of a millimetre.
+fn comes_nearer(footprint: Rect, sample: &Sample, cell: BodyPoint, slack: u64) -> bool {
+    let point = PointMm {
+        x: i32::from(cell.x_mm),
+        y: i32::from(cell.y_mm),
+    };
+    let resting = Sample::at_rest(footprint);
+    let (Some(before), Some(there)) = (resting.enter(point), sample.enter(point)) else {
+        // Too far away to be compared: a cell inside a sample never is.
+        return true;
+    };
+    let before = footprint.distance_squared(before).isqrt();
+    let there = footprint.distance_squared(there).isqrt();
+    there.saturating_add(slack) < before
+}
+
+/// Path between two samples, µm; zero on the spot.
+fn step_um(tube: &Tube) -> u64 {
+    let steps = tube.samples().len().saturating_sub(1) as u64;
+    tube.plan.path.checked_div(steps).unwrap_or(0)
+}
+
+/// Every how many samples unknown space is tested.
+fn stride(tube: &Tube) -> usize {
+    let stride = STRIDE_UM.checked_div(step_um(tube)).unwrap_or(1);
+    usize::try_from(stride).unwrap_or(1).max(1)
 }
 
 /// Inflation that counts against unknown space when only every `stride`-th sample is tested, µm.
