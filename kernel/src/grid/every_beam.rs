@@ -100,25 +100,49 @@ impl<const W: usize, const H: usize> Layer<'_, W, H> {
     fn cross(&mut self, start: Spot, direction: BinaryAngle, echo: Echo) {
         let mut walk = Walk::new(start, direction, self.cell_um);
         let end = path(self.model.reach_um(echo));
-        let diagonal_um = self.cell_um.saturating_mul(46_341) >> 16;
-        let free_um = i64::from(self.model.free_um(echo)).saturating_sub(diagonal_um);
+        // Half a diagonal, and what path lengths may be off by rounding.
+        let aside_um = (self.cell_um.saturating_mul(46_342) >> 16).saturating_add(16);
+        let free_um = i64::from(self.model.free_um(echo)).saturating_sub(aside_um);
         // Up to here the middle of every crossed cell is plainly free.
         let free = path(u32::try_from(free_um).unwrap_or(0));
-        let line = Line::new(start, direction, self.cell_um);
+        let Some(entered) = self.cross_free(&mut walk, free.min(end)) else {
+            return;
+        };
+        self.cross_edge(
+            &mut walk,
+            &Line::new(start, direction, self.cell_um),
+            echo,
+            end,
+            entered,
+        );
+    }
+
+    /// Frees cells up to the path length `free`; returns whether the beam is on the map by
+    /// then, `None` if it left it.
+    fn cross_free(&mut self, walk: &mut Walk, free: u64) -> Option<bool> {
+        let evidence = self.model.free.as_counts();
         let mut entered = false;
         // Ends: every step crosses a border, and the borders of an axis are a cell or more apart.
+        while walk.leave() <= free {
+            let on_map = self.raise(walk.cell, evidence);
+            // The map is convex: a beam that left it does not return.
+            if entered && !on_map {
+                return None;
+            }
+            entered = on_map;
+            walk.step();
+        }
+        Some(entered)
+    }
+
+    /// Asks the model about every cell from where the beam is to the path length `end`.
+    fn cross_edge(&mut self, walk: &mut Walk, line: &Line, echo: Echo, end: u64, entered: bool) {
+        let mut entered = entered;
         while walk.at <= end {
-            let leave = walk.leave();
-            let evidence = if leave <= free {
-                Some(self.model.free)
-            } else {
-                self.model.evidence(line.project(walk.cell), echo)
-            };
-            let on_map = match evidence {
+            let on_map = match self.model.evidence(line.project(walk.cell), echo) {
                 Some(evidence) => self.raise(walk.cell, evidence.as_counts()),
                 None => self.window.slot(walk.cell).is_some(),
             };
-            // The map is convex: a beam that left it does not return.
             if entered && !on_map {
                 return;
             }
@@ -227,13 +251,23 @@ impl Walk {
     #[inline]
     fn step(&mut self) {
         self.at = self.leave();
-        if self.column.next <= self.row.next {
-            self.cell.column = self.cell.column.saturating_add(self.column.step);
-            self.column.next = self.column.next.saturating_add(self.column.apart);
+        // Which border comes next is as good as random; selecting costs less than guessing.
+        let column_first = self.column.next <= self.row.next;
+        let (columns, along) = if column_first {
+            (self.column.step, self.column.apart)
         } else {
-            self.cell.row = self.cell.row.saturating_add(self.row.step);
-            self.row.next = self.row.next.saturating_add(self.row.apart);
-        }
+            (0, 0)
+        };
+        let (rows, across) = if column_first {
+            (0, 0)
+        } else {
+            (self.row.step, self.row.apart)
+        };
+        // Cells within reach of a beam are far from the ends of the range.
+        self.cell.column = self.cell.column.wrapping_add(columns);
+        self.cell.row = self.cell.row.wrapping_add(rows);
+        self.column.next = self.column.next.saturating_add(along);
+        self.row.next = self.row.next.saturating_add(across);
     }
 }
 

@@ -55,7 +55,8 @@ impl<'a> Fan<'a> {
     }
 
     /// The beam nearest in angle to the vector `(x, y)` of the grid's frame; `None` if that is
-    /// more than half an increment away from every beam.
+    /// more than half an increment away from every beam. In a tie the beam farther
+    /// counter-clockwise counts, whichever way the scanner turns.
     ///
     /// # Bound
     /// O(1).
@@ -63,12 +64,12 @@ impl<'a> Fan<'a> {
         let count = u32::try_from(self.beams.len()).ok()?;
         let step = self.scanner.increment.unsigned_abs();
         let offset = bearing(x_um, y_um).minus(self.direction(0)).cast_unsigned();
-        let offset = if self.scanner.increment < 0 {
-            offset.wrapping_neg()
+        let (offset, half) = if self.clockwise() {
+            (offset.wrapping_neg(), step.saturating_sub(1) / 2)
         } else {
-            offset
+            (offset, step / 2)
         };
-        let (rounded, wrapped) = offset.overflowing_add(step / 2);
+        let (rounded, wrapped) = offset.overflowing_add(half);
         if wrapped {
             return usize::try_from(self.first_or_last(offset, count, step)).ok();
         }
@@ -80,11 +81,16 @@ impl<'a> Fan<'a> {
     fn first_or_last(&self, offset: u32, count: u32, step: u32) -> u32 {
         let last = count.saturating_sub(1);
         let from_last = step.wrapping_mul(last).abs_diff(offset);
-        if from_last < offset.wrapping_neg() {
+        let from_first = offset.wrapping_neg();
+        if from_last < from_first || (from_last == from_first && self.clockwise()) {
             last
         } else {
             0
         }
+    }
+
+    fn clockwise(&self) -> bool {
+        self.scanner.increment < 0
     }
 
     fn direction(&self, index: usize) -> BinaryAngle {
