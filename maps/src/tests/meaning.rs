@@ -48,7 +48,14 @@ fn a_file_as_others_write_it_is_read() {
                 free_thresh: 0.25\n\n";
     let description = parse_yaml(text, "office.yaml").unwrap();
     assert_eq!(description.image, "./office map.pgm");
-    assert_eq!(description.origin, [-10.0, -10.0, 0.0]);
+    let expected = [-10.0, -10.0, 0.0];
+    assert!(
+        description
+            .origin
+            .iter()
+            .zip(expected)
+            .all(|(a, b)| (a - b).abs() < 1e-12)
+    );
     assert!((description.free_thresh - 0.25).abs() < 1e-12);
     let picture = parse_pgm(
         b"P5 # by hand\n#more\n 3\n2 #\n 100\n\x00\x32\x64\x64\x00\x32",
