@@ -20,6 +20,7 @@ pub mod config;
 pub mod convert;
 pub mod decision;
 pub mod geometry;
+pub mod grid;
 pub mod guard;
 pub mod input;
 pub mod kernel;
