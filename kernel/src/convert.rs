@@ -122,7 +122,7 @@ pub fn signed_angle(radians: f64) -> Option<i64> {
     )
 }
 
-/// How a driver writes "no return" and its like into a range (design §2, "Beams").
+/// How a driver writes "no return" and its like into a range (REP 117 and other habits).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BeamEncoding {
     /// REP 117: +∞ no return, −∞ too near, NaN invalid.

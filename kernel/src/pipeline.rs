@@ -62,6 +62,13 @@ impl Pipeline {
             .is_some_and(|(stamp, _)| *stamp < since)
     }
 
+    /// Whether commands sent after `since` have been overwritten: the host ticks faster than
+    /// the configured period.
+    #[must_use]
+    pub fn has_forgotten(&self, since: Instant) -> bool {
+        self.count == HISTORY && !self.reaches(since)
+    }
+
     /// Every command sent since `since`, and the last one before that, newest first.
     ///
     /// # Bound

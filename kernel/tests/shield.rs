@@ -76,3 +76,27 @@ fn reverses_no_farther_than_the_vouched_area() {
         assert!(room.pose[0] < -0.4, "at {speed}: {:?}", room.pose);
     }
 }
+
+/// A wall beside the robot goes on where the scanner does not look; the operator's word for the
+/// disc ends where the scan shows something.
+#[test]
+fn turns_its_tail_into_no_wall_that_goes_on_out_of_view() {
+    for wall in [0.53, 0.55, 0.6, 0.65] {
+        for rate in [-0.5, -0.2, 0.5] {
+            let mut room = Room::new((-20.0, 20.0), (-2.0, wall), config());
+            let _ = room.start();
+            for _ in 0..150 {
+                let _ = room.tick(Some((0.0, rate)), false);
+                let (sin, cos) = room.pose[2].sin_cos();
+                for (x, y) in [(0.6, 0.42), (-0.6, 0.42), (-0.6, -0.42), (0.6, -0.42)] {
+                    let corner = room.pose[1] + sin * x + cos * y;
+                    assert!(
+                        corner < wall,
+                        "wall at {wall}, {rate} rad/s: {:?}",
+                        room.pose
+                    );
+                }
+            }
+        }
+    }
+}

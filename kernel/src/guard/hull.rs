@@ -47,6 +47,11 @@ impl Hull {
         }
     }
 
+    /// Declares that motions are missing; such a hull is never certified.
+    pub const fn mark_incomplete(&mut self) {
+        self.overflow = true;
+    }
+
     /// Whether every motion found room.
     #[must_use]
     pub const fn is_complete(&self) -> bool {

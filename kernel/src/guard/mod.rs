@@ -122,7 +122,7 @@ pub struct Scene<'a, const S: usize, const B: usize, const M: usize> {
 /// # Bound
 /// O(points × samples).
 /// # Source
-/// GUARD-01, GUARD-02; design §2.
+/// GUARD-01, GUARD-02; spec/model.md.
 pub fn certify<const S: usize, const B: usize, const M: usize>(
     parameters: &TubeParameters,
     hull: &Hull,

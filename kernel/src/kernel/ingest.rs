@@ -149,7 +149,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     }
 
     /// Takes in scans that waited for the odometry.
-    pub(super) fn settle_pending(&mut self, _hazard: &mut Worst) {
+    pub(super) fn settle_pending(&mut self) {
         for scanner in 0..S {
             let Some(Some(setup)) = self.config.config().scanners.get(scanner).copied() else {
                 continue;

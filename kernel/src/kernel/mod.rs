@@ -130,7 +130,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     /// # Bound
     /// O(scans × (beams + remembered) + speed factors × points × samples); no allocation.
     /// # Source
-    /// design §2; spec/ GUARD, BRAKE, LIMIT, ZONE, FRESH, SILENT, LATCH, INPUT, MEMORY.
+    /// spec/model.md; spec/ GUARD, BRAKE, LIMIT, ZONE, FRESH, SILENT, LATCH, INPUT, MEMORY.
     pub fn step(&mut self, inputs: &Inputs<'_>, now: Instant) -> Decision {
         let mut hazard = Worst(Reason::None);
         // The caller's clock, even if it ran backwards: nobody may hold a set point for longer.
@@ -141,7 +141,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         for scan in inputs.scans {
             self.take_scan(scan, now, &mut hazard);
         }
-        self.settle_pending(&mut hazard);
+        self.settle_pending();
         self.take_command(&inputs.command, now);
         self.refresh_memory();
         self.watch(now, &mut hazard);
@@ -190,7 +190,11 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         let released = self.stop.mode == Mode::Running && before.mode == Mode::Latched;
         if let (true, Some(pose)) = (released, self.track.pose()) {
             let rules = &self.config.config().memory;
-            self.memory.vouch(pose, rules.clear_at_start.as_um() / 1000);
+            self.memory.vouch(
+                self.config.memory(),
+                pose,
+                rules.clear_at_start.as_um() / 1000,
+            );
             let skirt = eighths_up(u64::from(rules.skirt.as_um().unsigned_abs()));
             self.memory
                 .occupy(pose, self.config.tube().footprint.grown(skirt));

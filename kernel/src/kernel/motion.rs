@@ -82,8 +82,12 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         };
         if wanted.twist == Twist::default() {
             // To stand still needs no certificate.
+            // The wheels turn only at rest: turning them while braking would leave the arc.
+            let rests = self.is_at_rest();
             let mut outcome = self.braking(Action::Pass, Reason::None, elapsed);
-            outcome.vertex.curvature = wanted.curvature;
+            if rests {
+                outcome.vertex.curvature = wanted.curvature;
+            }
             outcome.factor_permille = 1000;
             return outcome;
         }
@@ -162,7 +166,9 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             }
             previous = Some(*sent);
         }
-        if !self.pipeline.reaches(since) {
+        if self.pipeline.has_forgotten(since) {
+            hull.mark_incomplete();
+        } else if !self.pipeline.reaches(since) {
             self.push_unknown_past(&mut hull, odometry);
         }
         hull.push(candidate);

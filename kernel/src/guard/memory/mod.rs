@@ -294,19 +294,21 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
     }
 
     /// Takes the operator's word that the disc of `radius_mm` around the robot is free
-    /// (as a regular 16-gon inside it). Points stay what they are.
-    pub fn vouch(&mut self, pose: LocalPose, radius_mm: i32) {
+    /// (as a regular 16-gon inside it), but no farther than the nearest known point: where a
+    /// scan shows a wall inside the disc, the word does not hold for what the wall continues in.
+    pub fn vouch(&mut self, model: &MemoryModel, pose: LocalPose, radius_mm: i32) {
         let centre = PointMm {
             x: pose.x_um.div_euclid(1000),
             y: pose.y_um.div_euclid(1000),
         };
         self.seen.follow(centre);
+        let radius_mm = self
+            .nearest_mm(model, centre)
+            .min(radius_mm)
+            .clamp(0, COVER_MM);
         let mut rows: Rows = [0; CELLS];
         let corner = |number: u32| {
-            let spoke = polar(
-                radius_mm.clamp(0, COVER_MM),
-                BinaryAngle::from_counts(number.wrapping_shl(28)),
-            );
+            let spoke = polar(radius_mm, BinaryAngle::from_counts(number.wrapping_shl(28)));
             self.seen.cell_point(PointMm {
                 x: centre.x.saturating_add(spoke.x),
                 y: centre.y.saturating_add(spoke.y),
@@ -316,6 +318,27 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
             flip_left_of_edge(&mut rows, corner(number), corner(number.saturating_add(1)));
         }
         self.seen.mark(&rows);
+    }
+
+    /// Distance from `centre` to the nearest known point less the sensor error, mm.
+    fn nearest_mm(&self, model: &MemoryModel, centre: PointMm) -> i32 {
+        let swept = self.sweeps.iter().flat_map(|sweep| sweep.points());
+        let kept = self
+            .remembered()
+            .iter()
+            .map(|point| (point.x_mm, point.y_mm));
+        let nearest = swept
+            .map(|point| (point.x_mm, point.y_mm))
+            .chain(kept)
+            .map(|(x, y)| {
+                let square = |d: u32| u64::from(d).saturating_mul(u64::from(d));
+                square(i32::from(x).abs_diff(centre.x))
+                    .saturating_add(square(i32::from(y).abs_diff(centre.y)))
+            })
+            .min()
+            .map_or(u64::MAX, u64::isqrt);
+        let certain = nearest.saturating_sub(model.sensor_um.div_ceil(1000));
+        i32::try_from(certain).unwrap_or(i32::MAX)
     }
 
     /// Follows the anchor.
