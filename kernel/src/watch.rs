@@ -5,10 +5,13 @@
 use crate::arith::{MICRO, magnitude, mul_micro_up};
 use crate::config::{Config, Scanner};
 use crate::decision::Reason;
-use crate::geometry::frame::{PointMm, Rotation};
+use crate::geometry::frame::{PointMm, Rotation, polar};
+use crate::geometry::rect::Rect;
+use crate::guard::sweep::masks;
 use crate::input::{Beam, Odometry};
 use crate::odometry::{distance_um, turn_urad};
 use crate::time::{Duration, Instant};
+use crate::units::{BinaryAngle, Length};
 
 /// How a stamp relates to the newest one of its channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +67,36 @@ pub fn beams_usable(scanner: &Scanner, beams: &[Beam]) -> bool {
     let allowed = u64::from(scanner.beams).saturating_mul(u64::from(scanner.invalid_max.as_ppm()));
     let gap = longest.saturating_mul(u64::from(scanner.increment.unsigned_abs()));
     invalid.saturating_mul(MICRO) <= allowed && gap <= u64::from(scanner.invalid_gap_max)
+}
+
+/// Whether a scan returns from inside `zone` (millimetres, body frame), as the scanner stands on
+/// the robot: needs no odometry, so no scan waits for it.
+///
+/// # Source
+/// ZONE-01.
+#[must_use]
+pub fn returns_from_zone(scanner: &Scanner, beams: &[Beam], zone: Rect) -> bool {
+    let millimetres = |length: Length| length.as_um().div_euclid(1000);
+    let mut direction = scanner.first_beam;
+    beams.iter().any(|beam| {
+        let range = match beam {
+            Beam::Hit(range) => Some(i32::from(*range)),
+            Beam::TooNear => Some(millimetres(scanner.range_min)),
+            Beam::NoReturn | Beam::Invalid => None,
+        };
+        let along = direction;
+        direction = direction.plus(BinaryAngle::from_counts(scanner.increment.cast_unsigned()));
+        range.is_some_and(|range| {
+            let hit = polar(range, along);
+            let body = PointMm {
+                x: hit.x.saturating_add(millimetres(scanner.x)),
+                y: hit.y.saturating_add(millimetres(scanner.y)),
+            };
+            let own = matches!(beam, Beam::Hit(_))
+                && scanner.masks.iter().flatten().any(|mask| masks(mask, body));
+            zone.contains(body) && !own
+        })
+    })
 }
 
 /// A number that differs, but for chance, between different scans (FNV-1a).
@@ -170,7 +203,7 @@ fn forward_um(before: &Odometry, after: &Odometry) -> Option<i64> {
     let middle = before
         .pose
         .heading
-        .plus(crate::units::BinaryAngle::from_counts(half.cast_unsigned()));
+        .plus(BinaryAngle::from_counts(half.cast_unsigned()));
     let local = Rotation::new(middle).inverse().apply(offset);
     Some(i64::from(local.x).saturating_mul(100))
 }

@@ -1,9 +1,12 @@
 //! The kernel in shield mode, driven through its public door in a small exact world.
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+#![allow(clippy::indexing_slicing, clippy::arithmetic_side_effects)]
 mod common;
 
 use common::{Room, config};
 use haltline::decision::{Action, Reason, StopStatus};
+use haltline::input::{Beam, Inputs, Reading, Scan};
+use haltline::time::Instant;
 
 #[test]
 fn starts_latched_and_runs_after_a_reset_at_rest() {
@@ -99,4 +102,29 @@ fn turns_its_tail_into_no_wall_that_goes_on_out_of_view() {
             }
         }
     }
+}
+
+/// ZONE-01: the zone answers in the tick that receives the scan, although no odometry covers it yet.
+#[test]
+fn a_return_in_the_critical_zone_stops_without_waiting_for_odometry() {
+    let mut room = Room::new((-3.0, 6.0), (-2.0, 2.0), config());
+    let _ = room.start();
+    let decision = room.tick(Some((0.3, 0.0)), false);
+    assert_eq!(decision.action, Action::Pass, "{decision:?}");
+    let mut beams = room.beams();
+    // Straight ahead, 80 mm from the scanner: 7 mm before the front edge.
+    beams[270] = Beam::Hit(80);
+    let scans = [Reading::Value(Scan {
+        scanner: 0,
+        stamp: Instant::from_us(room.now_us - 20_000),
+        beams: &beams,
+    })];
+    let inputs = Inputs {
+        scans: &scans,
+        command: room.command(0.3, 0.0),
+        ..Inputs::default()
+    };
+    let decision = room.step(&inputs);
+    assert_eq!(decision.action, Action::ProtectiveStop, "{decision:?}");
+    assert_eq!(decision.reason, Reason::CriticalZone);
 }

@@ -103,6 +103,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         let Some(Some(setup)) = setup else {
             return hazard.add(Reason::ScanMalformed);
         };
+        let zone = self.zone();
         let Some(channel) = self.channels.get_mut(scan.scanner) else {
             return hazard.add(Reason::ScanMalformed);
         };
@@ -117,6 +118,10 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         if !watch::beams_usable(&setup, scan.beams) {
             return hazard.add(Reason::ScanMalformed);
         }
+        hazard.add_if(
+            watch::returns_from_zone(&setup, scan.beams, zone),
+            Reason::CriticalZone,
+        );
         channel.newest = Some(scan.stamp);
         channel.note_content(scan.beams, self.track.odometer());
         if !self.accept(scan.scanner, &setup, scan.beams, scan.stamp)
@@ -250,18 +255,23 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         hazard.add_if(self.point_in_zone(), Reason::CriticalZone);
     }
 
-    /// Whether a known point lies in the critical zone (ZONE-01).
-    fn point_in_zone(&self) -> bool {
+    /// The critical zone in the body frame, mm, outward.
+    fn zone(&self) -> Rect {
         let config = self.config.config();
         let um = |length: crate::units::Length| magnitude(length.as_um());
         let outline = &config.footprint;
         let mm = |edge: u64, margin: u64| eighths_up(edge.saturating_add(margin)) >> 3;
-        let zone = Rect {
+        Rect {
             front: mm(um(outline.front), um(config.zone.front)),
             rear: mm(um(outline.rear), um(config.zone.side)),
             left: mm(um(outline.left), um(config.zone.side)),
             right: mm(um(outline.right), um(config.zone.side)),
-        };
+        }
+    }
+
+    /// Whether a known point lies in the critical zone, also one that no scan shows.
+    fn point_in_zone(&self) -> bool {
+        let zone = self.zone();
         self.memory.clouds().flatten().any(|point| {
             zone.contains(crate::geometry::frame::PointMm {
                 x: i32::from(point.x_mm),

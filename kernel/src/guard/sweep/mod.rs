@@ -300,7 +300,8 @@ fn within(a: PointMm, b: PointMm, distance_mm: i32) -> bool {
         <= square(distance_mm)
 }
 
-fn masks(mask: &MaskRect, body: PointMm) -> bool {
+/// Whether a place in the body frame belongs to the robot itself.
+pub(crate) fn masks(mask: &MaskRect, body: PointMm) -> bool {
     let um = |mm: i32| mm.saturating_mul(1000);
     (mask.x_min.as_um()..=mask.x_max.as_um()).contains(&um(body.x))
         && (mask.y_min.as_um()..=mask.y_max.as_um()).contains(&um(body.y))
