@@ -6,9 +6,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use haltline_robots::Robot;
 use rayon::prelude::*;
 
+use crate::contact::Judge;
 use crate::controller::{Controller, RobotKernel};
 use crate::engine::{Run, STEP_US, run};
 use crate::file::{Scenario, ScenarioError};
+use crate::math::Pose;
+use crate::populate::populate;
 use crate::result::{CaseResult, FootprintRecord, Outcome, SuiteResult};
 use crate::verdict::{judge, judge_group};
 
@@ -45,10 +48,22 @@ pub struct CaseRun {
     pub naked_trace: Option<String>,
 }
 
+/// Name of a body that the footprint overlaps before anything has moved.
+fn overlapped(scenario: &Scenario, robot: &Robot) -> Option<String> {
+    let world = populate(scenario);
+    let judge = Judge::new(&robot.values.footprint, &world);
+    let start = &scenario.start;
+    let heading = start.heading_deg.get().to_radians();
+    let pose = Pose::new(start.x_m.get(), start.y_m.get(), heading);
+    let distances = judge.distances(&world, &pose, 0.0);
+    let index = distances.iter().position(|distance| *distance <= 0.0)?;
+    world.bodies().get(index).map(|body| body.name.clone())
+}
+
 /// Applies what a scenario says about the robot.
 ///
 /// # Errors
-/// The obstacle speed does not fit the kernel, the kernel refuses the robot, or the control period
+/// The robot stands on a body at the start, the obstacle speed does not fit the kernel, the kernel refuses the robot, or the control period
 /// is no multiple of a dynamics step.
 pub fn equip(scenario: Scenario, robot: &Robot) -> Result<Case, ScenarioError> {
     let wrong = |message: String| ScenarioError::whole(&scenario.name, message);
@@ -62,6 +77,11 @@ pub fn equip(scenario: Scenario, robot: &Robot) -> Result<Case, ScenarioError> {
         equipped = equipped
             .with_cover_host_death(cover)
             .ok_or_else(|| wrong("cover_host_death does not fit this robot".to_owned()))?;
+    }
+    if let Some(body) = overlapped(&scenario, &equipped) {
+        return Err(wrong(format!(
+            "the robot stands on {body} at the start; move the body, or write another [start]"
+        )));
     }
     let period_us = crate::math::microseconds(equipped.values.timing.period_s);
     if period_us == 0 || !period_us.is_multiple_of(STEP_US) {

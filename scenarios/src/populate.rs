@@ -12,7 +12,7 @@ pub fn populate(scenario: &Scenario) -> World {
         .wall
         .iter()
         .enumerate()
-        .map(|(i, wall)| line(i, wall));
+        .map(|(i, wall)| line(i, wall.get_ref()));
     let boxes = scenario
         .boxes
         .iter()

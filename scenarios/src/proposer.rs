@@ -61,7 +61,7 @@ impl Driver {
         let proposer = scenario.proposer.get_ref();
         Self {
             kind: proposer.kind,
-            steps: proposer.step.clone(),
+            steps: proposer.step.iter().map(|step| *step.get_ref()).collect(),
             goal: GoalDisc::of(scenario),
             speed: proposer.speed_mps.map_or(0.0, |v| v.get()),
             gain: proposer.heading_gain_per_s.map_or(1.5, |v| v.get()),

@@ -160,13 +160,13 @@ fn course(sentences: &mut Sentences, expect: &Expect, run: &RunResult) {
     });
     if let Some(least) = before.clearance_m {
         let clearance = run.samples.last().and_then(|sample| sample.clearance_m);
-        let enough = clearance.is_none_or(|clearance| clearance >= least.get());
+        let enough = clearance.is_some_and(|clearance| clearance >= least.get());
         sentences.demand(enough, || {
-            format!(
-                "Stopped {:.3} m from the nearest body, expected at least {:.3} m.",
-                clearance.unwrap_or(f64::INFINITY),
-                least.get()
-            )
+            let found = clearance.map_or_else(
+                || "There is no body to keep clear of".to_owned(),
+                |clearance| format!("Stopped {clearance:.3} m from the nearest body"),
+            );
+            format!("{found}, expected at least {:.3} m.", least.get())
         });
     }
     let beyond = |value: fn(&crate::result::Sample) -> f64| {

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::value::{NonNegative, Number, Pair, Positive};
+use super::value::{NonNegative, Number, Pair, Positive, exactly, perhaps, points};
 
 /// How a body looks to a laser.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -23,8 +23,10 @@ pub struct Wall {
     /// Name for reports.
     pub name: Option<String>,
     /// One end.
+    #[serde(deserialize_with = "exactly")]
     pub from_m: Pair,
     /// The other end.
+    #[serde(deserialize_with = "exactly")]
     pub to_m: Pair,
     /// How it looks to a laser.
     #[serde(default)]
@@ -40,8 +42,10 @@ pub struct BoxBody {
     /// Name for reports.
     pub name: Option<String>,
     /// Centre.
+    #[serde(deserialize_with = "exactly")]
     pub center_m: Pair,
     /// Full extents along its own x and y.
+    #[serde(deserialize_with = "exactly")]
     pub size_m: [Positive; 2],
     /// Heading of its own x.
     #[serde(default)]
@@ -60,6 +64,7 @@ pub struct Circle {
     /// Name for reports.
     pub name: Option<String>,
     /// Centre.
+    #[serde(deserialize_with = "exactly")]
     pub center_m: Pair,
     /// Radius.
     pub radius_m: Positive,
@@ -83,11 +88,14 @@ pub struct Motion {
     /// How long; default for ever.
     pub for_s: Option<Positive>,
     /// Constant velocity.
+    #[serde(default, deserialize_with = "perhaps")]
     pub velocity_mps: Option<Pair>,
     /// Constant turn rate about `pivot_m`.
     pub turn_radps: Option<Number>,
     /// Pivot in the world.
+    #[serde(default, deserialize_with = "perhaps")]
     pub pivot_m: Option<Pair>,
     /// `[t_s, x_m, y_m]` of the body's centre; times count from the start of the motion.
+    #[serde(default, deserialize_with = "points")]
     pub way_points: Option<Vec<[Number; 3]>>,
 }

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::fault::{FaultEntry, FaultKind};
-use super::{Motion, ProposerKind, Scenario, SweepAxis};
+use super::{Motion, ProposerKind, Scenario, Step, SweepAxis};
 
 /// Where and what: the caller adds the file.
 pub(super) type Complaint = (Option<Range<usize>>, String);
@@ -12,6 +12,12 @@ pub(super) type Complaint = (Option<Range<usize>>, String);
 pub(super) fn check(scenario: &Scenario) -> Result<(), Complaint> {
     check_proposer(scenario)?;
     check_naked(scenario)?;
+    for wall in &scenario.wall {
+        if wall.get_ref().from_m == wall.get_ref().to_m {
+            let message = "the wall has no length; write a to_m that differs from from_m";
+            return Err((Some(wall.span()), message.to_owned()));
+        }
+    }
     for fault in &scenario.fault {
         check_fault(fault.get_ref()).map_err(|message| (Some(fault.span()), message))?;
     }
@@ -85,9 +91,30 @@ fn check_proposer(scenario: &Scenario) -> Result<(), Complaint> {
         ProposerKind::Script if proposer.speed_mps.is_some() => {
             "speed_mps belongs to the reckless proposer; write linear_mps into the steps"
         }
-        _ => return Ok(()),
+        _ => return check_steps(&proposer.step),
     };
     Err((Some(scenario.proposer.span()), complaint.to_owned()))
+}
+
+fn check_steps(steps: &[toml::Spanned<Step>]) -> Result<(), Complaint> {
+    let mut before_s = 0.0;
+    for spanned in steps {
+        let step = spanned.get_ref();
+        if step.angular_radps.is_some() && step.curvature_per_m.is_some() {
+            let message = "a step turns by angular_radps or by curvature_per_m; write one of them";
+            return Err((Some(spanned.span()), message.to_owned()));
+        }
+        let until_s = step.until_s.get();
+        if until_s <= before_s {
+            let message = format!(
+                "the step never runs: until_s = {until_s} is not after {before_s}, the end of the \
+                 step before; write times that rise"
+            );
+            return Err((Some(spanned.span()), message));
+        }
+        before_s = until_s;
+    }
+    Ok(())
 }
 
 fn check_naked(scenario: &Scenario) -> Result<(), Complaint> {
@@ -128,7 +155,7 @@ fn check_fault(fault: &FaultEntry) -> Result<(), String> {
 }
 
 fn motions(scenario: &Scenario) -> impl Iterator<Item = &toml::Spanned<Motion>> {
-    let walls = scenario.wall.iter().map(|body| &body.motion);
+    let walls = scenario.wall.iter().map(|body| &body.get_ref().motion);
     let boxes = scenario.boxes.iter().map(|body| &body.motion);
     let circles = scenario.circle.iter().map(|body| &body.motion);
     walls.chain(boxes).chain(circles).flatten()

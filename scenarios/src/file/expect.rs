@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use super::names;
 use super::value::{NonNegative, Number, Positive};
 
 /// Whether the guarded robot may touch while it moves.
@@ -31,7 +32,7 @@ pub struct Expect {
     /// Whether it ends at rest because the guard or the stop logic holds it.
     pub blocked: Option<bool>,
     /// Reasons that must occur, as the kernel names them.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "names::reasons")]
     pub reasons: Vec<String>,
     /// A stop decision must follow the first fault within this time.
     pub stop_within_s: Option<Positive>,
@@ -40,7 +41,7 @@ pub struct Expect {
     /// Least angle turned in all.
     pub turned_min_rad: Option<NonNegative>,
     /// Assumptions that the result must name as broken; any other broken one fails the scenario.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "names::assumptions")]
     pub assumptions_broken: Vec<String>,
 }
 

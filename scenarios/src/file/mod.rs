@@ -9,6 +9,7 @@ mod error;
 mod expect;
 pub mod fault;
 mod load;
+mod names;
 pub mod value;
 
 #[cfg(test)]
@@ -21,7 +22,7 @@ pub use load::{load_dir, load_file, parse};
 
 use serde::Deserialize;
 use toml::Spanned;
-use value::{Fraction, NonNegative, Number, Pair, Positive};
+use value::{Delay, Fraction, NonNegative, Number, Pair, Positive, Timeout};
 
 /// One scenario: a world, a robot in it, what goes wrong, and what must come of it.
 #[derive(Clone, Debug, Deserialize)]
@@ -36,6 +37,7 @@ pub struct Scenario {
     /// One sentence for people.
     pub title: String,
     /// Ids of the requirements it covers.
+    #[serde(deserialize_with = "names::requirements")]
     pub requirements: Vec<String>,
     /// Robot file stem, such as `seekur_jr`.
     pub robot: String,
@@ -44,7 +46,7 @@ pub struct Scenario {
     /// Seed of all noise.
     pub seed: u64,
     /// When the run ends at the latest.
-    pub timeout_s: Positive,
+    pub timeout_s: Timeout,
     /// Overrides the robot file: whether the guard's tube covers a dying host.
     pub cover_host_death: Option<bool>,
     /// Where the robot stands at time zero.
@@ -52,7 +54,7 @@ pub struct Scenario {
     pub start: Start,
     /// Lines without thickness.
     #[serde(default)]
-    pub wall: Vec<Wall>,
+    pub wall: Vec<Spanned<Wall>>,
     /// Rectangles.
     #[serde(default, rename = "box")]
     pub boxes: Vec<BoxBody>,
@@ -106,6 +108,7 @@ pub struct Start {
 #[serde(deny_unknown_fields)]
 pub struct Goal {
     /// Centre.
+    #[serde(deserialize_with = "value::exactly")]
     pub position_m: Pair,
     /// Radius.
     pub radius_m: Positive,
@@ -123,7 +126,7 @@ pub struct Proposer {
     pub heading_gain_per_s: Option<Positive>,
     /// `script`: what to do, in order.
     #[serde(default)]
-    pub step: Vec<Step>,
+    pub step: Vec<Spanned<Step>>,
 }
 
 /// Sort of proposer.
@@ -164,7 +167,7 @@ pub struct Sensor {
     /// Part of the beams that are lost at random.
     pub dropout_fraction: Fraction,
     /// Time from the last beam to the host; default 5 ms.
-    pub delay_s: Option<NonNegative>,
+    pub delay_s: Option<Delay>,
     /// Shortest range; default the robot file's.
     pub range_min_m: Option<NonNegative>,
     /// Longest range; default the robot file's.
@@ -178,7 +181,7 @@ pub struct OdometryModel {
     /// Samples each second; default one each control period.
     pub rate_hz: Option<Positive>,
     /// Time from measurement to host; default 0.
-    pub delay_s: NonNegative,
+    pub delay_s: Delay,
     /// Position error for each metre, signed; default drawn within the robot's bound.
     pub error_m_per_m: Option<Number>,
     /// Heading error for each radian, signed; default drawn within the robot's bound.
@@ -190,7 +193,7 @@ pub struct OdometryModel {
 #[serde(deny_unknown_fields, default)]
 pub struct Drive {
     /// Time from decision to wheels, a whole number of 10 ms; default 60 ms or the robot's bound.
-    pub latency_s: Option<NonNegative>,
+    pub latency_s: Option<Delay>,
     /// Time constant of the first-order lag; default 20 ms or what the robot's bound leaves.
     pub lag_s: Option<NonNegative>,
     /// True turn rate for each commanded and measured one (skid steer); default 1.
@@ -230,6 +233,7 @@ pub struct Operator {
     /// Times of resets; default one as soon as the robot can take it (0.2 s + its rest time).
     pub resets_s: Option<Vec<NonNegative>>,
     /// `[from_s, until_s]` during which the emergency stop line is pulled.
+    #[serde(deserialize_with = "value::windows")]
     pub emergency_stops_s: Vec<[NonNegative; 2]>,
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 
 const GOOD: &str = r#"title = "A wall ahead"
-requirements = ["GUARD"]
+requirements = ["GUARD-01"]
 robot = "seekur_jr"
 obstacle_speed_mps = 0
 seed = 1
@@ -128,4 +128,71 @@ fn sweep_over_a_path_that_is_not_there_is_refused() {
     let message = error(&format!("{GOOD}{sweep}"));
     assert!(message.contains("circle.7.radius_m"), "{message}");
     assert!(message.starts_with("a.toml:27:1:"), "{message}");
+}
+
+/// Refused at `place` with words on what is wrong or what to write.
+#[track_caller]
+fn refused(from: &str, to: &str, place: &str, words: &str) {
+    assert_eq!(GOOD.matches(from).count(), 1, "`{from}` must be unique");
+    let message = error(&GOOD.replace(from, to));
+    assert!(
+        message.starts_with(&format!("a.toml:{place}:")),
+        "{message}"
+    );
+    assert!(message.contains(words), "{message}");
+}
+
+#[test]
+fn arrays_of_wrong_length_are_refused() {
+    let center = "center_m = [3.0, 3.0]";
+    refused(center, "center_m = [1, 2, 3]", "13:12", "write exactly 2");
+    refused(center, "center_m = [1]", "13:12", "write exactly 2");
+    let velocity = "velocity_mps = [0.0, -1.0]";
+    refused(velocity, "velocity_mps = [0.0]", "15:27", "write exactly 2");
+    let points = "way_points = [[0.0, 1.0, 2.0, 3.0]]";
+    refused(velocity, points, "15:25", "write exactly 3");
+}
+
+#[test]
+fn windows_and_numbers_out_of_range_are_refused() {
+    let with = |table: &str| error(&format!("{GOOD}\n{table}\n"));
+    let message = with("[operator]\nemergency_stops_s = [[5.0, 3.0]]");
+    assert!(message.starts_with("a.toml:28:"), "{message}");
+    assert!(message.contains("until_s after from_s"), "{message}");
+    let message = with("[operator]\nemergency_stops_s = [[3.0, 5.0, 7.0]]");
+    assert!(message.contains("write exactly 2"), "{message}");
+    let message = with("[sensor]\ndelay_s = 1e6");
+    assert!(message.starts_with("a.toml:28:11:"), "{message}");
+    assert!(message.contains("from 0 to 10"), "{message}");
+    refused(
+        "timeout_s = 10.0",
+        "timeout_s = 1e9",
+        "6:13",
+        "at most 3600",
+    );
+    refused("radius_m = 0.2", "radius_m = 1e9", "14:12", "at most 1e6");
+    refused(
+        "to_m = [5.0, 2.0]",
+        "to_m = [5.0, -2.0]",
+        "8:1",
+        "no length",
+    );
+}
+
+#[test]
+fn steps_that_contradict_or_never_run_are_refused() {
+    let step = "linear_mps = 0.5";
+    let both = "linear_mps = 0.5\nangular_radps = 0.1\ncurvature_per_m = 0.2";
+    refused(step, both, "20:1", "write one of them");
+    let late = "linear_mps = 0.5\n[[proposer.step]]\nuntil_s = 4.0";
+    refused(step, late, "23:1", "never runs");
+}
+
+#[test]
+fn names_that_nobody_knows_are_refused() {
+    refused("GUARD-01", "GUARD-99", "2:16", "no requirement `GUARD-99`");
+    let typo = "reasons = [\"GuardBloked\"]";
+    refused("blocked = true", typo, "25:11", "GuardBlocked");
+    let typo = "assumptions_broken = [\"A-FOO\"]";
+    refused("blocked = true", typo, "25:22", "A-BRAKE");
 }

@@ -49,6 +49,14 @@ fn course_expectations_hold_and_fail() {
     assert!(!passes("reasons = [\"ScanStale\"]", &parked));
     assert!(passes("stopped_before = { clearance_m = 1.0 }", &parked));
     assert!(!passes("stopped_before = { clearance_m = 2.5 }", &parked));
+    let mut nothing_near = parked.clone();
+    for sample in &mut nothing_near.samples {
+        sample.clearance_m = None;
+    }
+    assert!(!passes(
+        "stopped_before = { clearance_m = 1.0 }",
+        &nothing_near
+    ));
     assert!(passes("stopped_before = { x_m = 0.1 }", &parked));
     assert!(!passes("stopped_before = { x_m = -0.1 }", &parked));
     assert!(!passes("stopped_before = { y_m = -0.1 }", &parked));

@@ -1,0 +1,110 @@
+//! Names that must be those of the specification or of the kernel: a typo is no failed run.
+
+use haltline::decision::Reason;
+use serde::{Deserialize, Deserializer, de::Error};
+
+/// What the simulator names when a body is invisible to every beam.
+const SIMULATOR_ONLY: &str = "A-VISIBLE";
+
+/// All reasons of the kernel, in its order.
+const REASONS: [Reason; 31] = [
+    Reason::None,
+    Reason::GuardLimited,
+    Reason::GuardBlocked,
+    Reason::LimitExceeded,
+    Reason::ReverseNotAllowed,
+    Reason::EmptyWindow,
+    Reason::CommandMissing,
+    Reason::CommandStale,
+    Reason::CommandFuture,
+    Reason::CommandReordered,
+    Reason::CommandMalformed,
+    Reason::WaitingForRelease,
+    Reason::CriticalZone,
+    Reason::ScanMissing,
+    Reason::ScanStale,
+    Reason::ScanFuture,
+    Reason::ScanReordered,
+    Reason::ScanMalformed,
+    Reason::ScanFrozen,
+    Reason::OdometryMissing,
+    Reason::OdometryStale,
+    Reason::OdometryFuture,
+    Reason::OdometryReordered,
+    Reason::OdometryMalformed,
+    Reason::OdometryJump,
+    Reason::OdometryInconsistent,
+    Reason::DriveMismatch,
+    Reason::TickLate,
+    Reason::TimeReversed,
+    Reason::Startup,
+    Reason::EmergencyStopLine,
+];
+
+/// Ids of requirements.
+pub(super) fn requirements<'de, D>(deserializer: D) -> Result<Vec<String>, D::Error>
+where
+    D: Deserializer<'de>,
+{
+    let all = haltline_spec::requirements::requirements();
+    let known: Vec<_> = all.into_iter().map(|found| found.id.to_owned()).collect();
+    checked(deserializer, "requirement", &known)
+}
+
+/// Ids of assumptions.
+pub(super) fn assumptions<'de, D>(deserializer: D) -> Result<Vec<String>, D::Error>
+where
+    D: Deserializer<'de>,
+{
+    let all = haltline_spec::requirements::assumptions();
+    let mut known: Vec<_> = all.into_iter().map(|found| found.id.to_owned()).collect();
+    if !known.iter().any(|id| id == SIMULATOR_ONLY) {
+        known.push(SIMULATOR_ONLY.to_owned());
+    }
+    checked(deserializer, "assumption", &known)
+}
+
+/// Reasons as the kernel names them.
+pub(super) fn reasons<'de, D>(deserializer: D) -> Result<Vec<String>, D::Error>
+where
+    D: Deserializer<'de>,
+{
+    let known: Vec<_> = REASONS.iter().map(|reason| format!("{reason:?}")).collect();
+    checked(deserializer, "reason", &known)
+}
+
+fn checked<'de, D>(deserializer: D, what: &str, known: &[String]) -> Result<Vec<String>, D::Error>
+where
+    D: Deserializer<'de>,
+{
+    let names = Vec::<String>::deserialize(deserializer)?;
+    match names.iter().find(|name| !known.contains(name)) {
+        Some(name) => {
+            let family = |id: &str| id.split_once('-').map(|(family, _)| family.to_owned());
+            let alike = |id: &&String| family(id) == family(name);
+            let near: Vec<_> = known.iter().filter(alike).map(String::as_str).collect();
+            let near = if near.is_empty() {
+                known.join(", ")
+            } else {
+                near.join(", ")
+            };
+            Err(D::Error::custom(format!(
+                "there is no {what} `{name}`; write one of {near}"
+            )))
+        }
+        None => Ok(names),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reasons_are_complete_and_in_the_kernels_order() {
+        for (index, reason) in REASONS.iter().enumerate() {
+            assert_eq!(*reason as usize, index, "{reason:?}");
+        }
+        assert_eq!(REASONS.last(), Some(&Reason::EmergencyStopLine));
+    }
+}
