@@ -97,6 +97,13 @@ impl Sensors {
         }
     }
 
+    /// Time from the first to the last beam of a scanner.
+    #[must_use]
+    pub fn sweep_us(&self, scanner: usize) -> u64 {
+        let found = self.scanners.get(scanner);
+        found.map_or(0, |(_, model)| model.sweep_us)
+    }
+
     /// Sweeps whose last beam left no later than `now_us`, each with its arrival time.
     ///
     /// `pose_at` gives the robot's true pose at any time up to `now_us`.

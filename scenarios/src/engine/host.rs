@@ -189,7 +189,7 @@ impl<'a> Host<'a> {
             && record.status == StopStatus::Running
             && inputs.reset_us.is_some()
         {
-            engine.vouch(t_us, self.monitors.seen());
+            engine.vouch(t_us);
         }
         self.decision = Some(record);
         record.set_point

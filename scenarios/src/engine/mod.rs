@@ -22,7 +22,7 @@ use crate::odometry::{Odometer, RawOdometry};
 use crate::populate::populate;
 use crate::proposer::GoalDisc;
 use crate::result::RunResult;
-use crate::sensor::{RawScan, Sensors};
+use crate::sensor::{RawScan, Sensors, beam_time_us};
 use crate::world::World;
 use host::Host;
 use recorder::Recorder;
@@ -59,6 +59,8 @@ struct Engine<'a> {
     /// True pose at every dynamics step so far.
     history: Vec<Pose>,
     rest_since_us: Option<u64>,
+    /// Returned points of the newest scan of each scanner, in the world.
+    returns: Vec<Vec<[f64; 2]>>,
     /// Origin of the host's clock, for the stamps of all data.
     base_us: u64,
     broken: Vec<Broken>,
@@ -130,6 +132,7 @@ impl<'a> Engine<'a> {
                 start.heading_deg.get().to_radians(),
             )],
             rest_since_us: Some(0),
+            returns: vec![Vec::new(); robot.values.scanners.len()],
             base_us: Faults::new(scenario).clock_base_us(),
             broken: assumption::broken(robot, scenario, &world, odometer.error),
             odometer,
@@ -174,20 +177,29 @@ impl<'a> Engine<'a> {
             .distances(&self.world, &self.pose(), seconds(t_us))
     }
 
-    /// At a reset the operator vouches for a disc; what is in it and was never seen breaks A-START.
-    fn vouch(&mut self, t_us: u64, seen: &[Option<f64>]) {
-        let (pose, radius_m) = (self.pose(), self.robot.values.memory.clear_at_start_m);
+    /// At a reset the operator vouches for a disc, but no farther than the nearest return of the
+    /// newest scans less their error; any part of a body inside that disc breaks A-START.
+    fn vouch(&mut self, t_us: u64) {
+        let pose = self.pose();
+        let away = |[x, y]: [f64; 2]| libm::hypot(x - pose.x, y - pose.y);
+        let radius_m = self.returns.iter().zip(&self.robot.values.scanners).fold(
+            self.robot.values.memory.clear_at_start_m,
+            |radius, (points, scanner)| {
+                let nearest = points.iter().map(|point| away(*point) - scanner.error_m());
+                nearest.fold(radius, f64::min)
+            },
+        );
         let t_s = seconds(t_us);
         let distances = self
             .judge
             .distances_from(&self.world, [pose.x, pose.y], t_s);
         for (index, (body, distance)) in self.world.bodies().iter().zip(distances).enumerate() {
-            let unseen = seen.get(index).is_some_and(Option::is_none);
-            if distance < radius_m && unseen && !body.invisible {
+            if distance < radius_m && !body.invisible {
                 self.broken.push(Broken {
                     id: "A-START",
                     what: format!(
-                        "{} stands {distance:.2} m from the rotation centre at the reset, unseen",
+                        "{} stands {distance:.2} m from the rotation centre at the reset, inside the \
+                         vouched {radius_m:.2} m",
                         body.name
                     ),
                     body: Some(index),
@@ -228,12 +240,39 @@ impl<'a> Engine<'a> {
     fn receive(&mut self, t_us: u64, faults: &mut Faults) -> (Vec<RawScan>, Option<RawOdometry>) {
         let scans = arrived(&mut self.transit.scans, t_us);
         let scans = faults.scans(t_us, scans);
+        for scan in &scans {
+            self.note_returns(scan);
+        }
         let samples = arrived(&mut self.transit.odometry, t_us);
         let odometry = samples
             .into_iter()
             .filter_map(|sample| faults.odometry(t_us, sample))
             .last();
         (scans, odometry)
+    }
+
+    /// Keeps where the beams of a scan came back from, in the world.
+    fn note_returns(&mut self, scan: &RawScan) {
+        let Some(scanner) = self.robot.values.scanners.get(scan.scanner) else {
+            return;
+        };
+        let sweep_us = self.sensors.sweep_us(scan.scanner);
+        let count = scan.ranges_m.len();
+        let beams = scan.ranges_m.iter().zip(&scan.bodies).enumerate();
+        let points = beams
+            .filter(|(_, (range, body))| body.is_some() && range.is_finite() && **range > 0.0)
+            .map(|(beam, (range, _))| {
+                let at_us = beam_time_us(scan.begun_us, sweep_us, beam, count);
+                let heading = scanner.first_beam_rad() + scanner.increment_rad() * beam as f64;
+                let mount = Pose::new(scanner.x_m, scanner.y_m, heading);
+                self.pose_at(at_us)
+                    .then(mount)
+                    .apply([f64::from(*range), 0.0])
+            })
+            .collect();
+        if let Some(newest) = self.returns.get_mut(scan.scanner) {
+            *newest = points;
+        }
     }
 
     /// Integrates drive, pose and odometer over one step.

@@ -173,3 +173,20 @@ fn robot_that_stands_on_a_body_is_refused() {
     // The front edge is 0.6 m ahead.
     assert!(on_top(0.69).is_err() && on_top(0.72).is_ok());
 }
+
+#[test]
+fn only_what_reaches_into_the_vouched_disc_breaks_the_start() {
+    let named = |disc: &str| {
+        let text = format!("{ROOM}\n[[circle]]\nradius_m = 0.1\n{disc}\n")
+            .replace("timeout_s = 10.0", "timeout_s = 1.0");
+        let controller = Some(Box::<PassThrough>::default() as Box<dyn Controller>);
+        let result = run(&scenario(&text), &robot(), controller).result;
+        let ids = result.assumptions_broken.into_iter().map(|b| b.id);
+        ids.collect::<Vec<_>>()
+    };
+    // Behind the robot, where no beam looks: 0.8 m away, then 1.1 m.
+    assert_eq!(named("center_m = [-0.9, 0.0]"), ["A-START"]);
+    assert!(named("center_m = [-1.2, 0.0]").is_empty());
+    // Ahead, 0.8 m away and seen: the word ends before it.
+    assert!(named("center_m = [0.9, 0.0]").is_empty());
+}

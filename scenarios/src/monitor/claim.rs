@@ -31,10 +31,6 @@ impl Claim {
         }
     }
 
-    pub(super) fn seen(&self) -> &[Option<f64>] {
-        &self.seen_s
-    }
-
     pub(super) fn tick(&mut self, tick: &Tick<'_>, fresh_scans: &[usize]) {
         let scans = fresh_scans.iter().filter_map(|i| tick.inputs.scans.get(*i));
         for body in scans.flat_map(|scan| scan.bodies.iter().flatten()) {

@@ -172,12 +172,6 @@ impl<'r> Monitors<'r> {
         self.claim.touch(touch, broken);
     }
 
-    /// Bodies that some valid beam of a delivered scan has returned so far.
-    #[must_use]
-    pub fn seen(&self) -> &[Option<f64>] {
-        self.claim.seen()
-    }
-
     /// The accounts.
     #[must_use]
     pub fn finish(self) -> Vec<MonitorReport> {
