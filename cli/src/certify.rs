@@ -3,7 +3,7 @@
 use crate::args::CertifyArgs;
 use crate::certificate::{Certificate, Parts};
 use crate::claims::{self, Claim, Counterexample, Evidence, Replay, Status};
-use crate::failure::{Exit, Failure, write_file};
+use crate::failure::{Exit, Failure, prepare, write_file};
 use crate::library::{self, Library};
 use crate::provenance::FileHash;
 use crate::report::page;
@@ -40,6 +40,7 @@ pub fn certify(args: &CertifyArgs) -> Result<Exit, Failure> {
 
 fn certify_robot(robot: &Robot, folder: Option<&Path>, out: &Path) -> Result<Exit, Failure> {
     let library = library::scenarios(folder)?;
+    prepare(out)?;
     let start = Instant::now();
     let contract = Contract::of(robot);
     let contract_s = start.elapsed().as_secs_f64();

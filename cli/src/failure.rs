@@ -84,6 +84,23 @@ impl fmt::Display for Failure {
     }
 }
 
+/// Creates the output folder and tries it out, before the work whose results it is for.
+///
+/// # Errors
+/// [`Exit::BadInput`] if no file can be written there.
+pub fn prepare(out: &Path) -> Result<(), Failure> {
+    let probe = out.join(format!(".haltline-{}", std::process::id()));
+    std::fs::create_dir_all(out)
+        .and_then(|()| std::fs::write(&probe, b""))
+        .and_then(|()| std::fs::remove_file(&probe))
+        .map_err(|error| {
+            let shown = out.display();
+            Failure::input(format!(
+                "--out {shown}: cannot be written: {error}; name a folder that can be"
+            ))
+        })
+}
+
 /// Writes a file, creating its folder.
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! `haltline run`: one scenario, its picture, its trace.
 
 use crate::args::RunArgs;
-use crate::failure::{Exit, Failure, write_file};
+use crate::failure::{Exit, Failure, prepare, write_file};
 use crate::library;
 use crate::picture::{png, svg};
 use crate::report::drawing::{self, Subject};
@@ -10,6 +10,7 @@ use console::style;
 use haltline_scenarios::batch::{Case, CaseRun, equip, run_case, run_one};
 use haltline_scenarios::result::{Contact, Judgement, MonitorReport, Outcome, RunResult, Stop};
 use serde::Serialize;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// What `--json` prints.
@@ -53,6 +54,7 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
         None => library::robot_by_name(&scenario.robot)?,
     };
     let case = equip(scenario, &robot).map_err(|error| Failure::input(error.to_string()))?;
+    prepare(&args.out)?;
     let done = drive(&case, args.naked)?;
     let subject = if args.naked {
         Subject::Naked
@@ -145,10 +147,24 @@ fn print_json(case: &Case, done: &CaseRun, naked: bool) -> Result<(), Failure> {
         naked_contacts: twin.map(|twin| twin.contacts.len()),
         judgement: (!naked).then_some(&done.result.judgement),
     };
-    let text = serde_json::to_string(&summary)
+    let text = serde_json::to_value(&summary)
+        .map(rounded)
+        .and_then(|value| serde_json::to_string(&value))
         .map_err(|error| Failure::not_checkable(format!("json: {error}")))?;
     say!("{text}");
     Ok(())
+}
+
+/// Floats to six decimals: micrometres and microseconds; the rest is noise of the arithmetic.
+fn rounded(value: Value) -> Value {
+    match value {
+        Value::Array(list) => list.into_iter().map(rounded).collect(),
+        Value::Object(map) => map.into_iter().map(|(k, v)| (k, rounded(v))).collect(),
+        Value::Number(number) if number.is_f64() => number
+            .as_f64()
+            .map_or(Value::Null, |v| Value::from((v * 1e6).round() / 1e6)),
+        other => other,
+    }
 }
 
 fn print_summary(case: &Case, done: &CaseRun, naked: bool) {

@@ -181,3 +181,28 @@ fn help_teaches() {
     }
     expect_exit(&haltline(&["certfy"]), 2);
 }
+
+#[test]
+fn an_output_folder_that_cannot_be_written_is_bad_input() {
+    let out = folder("run_unwritable");
+    let file = write(&out, "wall_ahead.toml", WALL_AHEAD);
+    // A file stands where the folder should be.
+    let output = haltline(&["run", &file, "--out", &file]);
+    expect_exit(&output, 2);
+    assert!(stderr(&output).contains("--out"), "{}", stderr(&output));
+    assert!(stdout(&output).is_empty(), "nothing was run");
+}
+
+#[test]
+fn json_has_at_most_six_decimals() {
+    let out = folder("run_decimals");
+    let file = write(&out, "wall_ahead.toml", WALL_AHEAD);
+    let output = haltline(&["run", &file, "--json", "--out", &out.display().to_string()]);
+    let text = stdout(&output);
+    let numbers = text.split(|c: char| !c.is_ascii_digit() && c != '.');
+    let decimals = numbers
+        .filter_map(|word| word.split_once('.'))
+        .map(|(_, d)| d.len());
+    let longest = decimals.max().expect("there are floats");
+    assert!((2..=6).contains(&longest), "{longest} decimals in {text}");
+}

@@ -7,7 +7,7 @@ mod shadow;
 mod verdict;
 
 use crate::args::{LogFormat, ReplayArgs};
-use crate::failure::{Exit, Failure, write_file};
+use crate::failure::{Exit, Failure, prepare, write_file};
 use crate::picture::{Picture, png, svg};
 use crate::report::words;
 use crate::sena;
@@ -32,6 +32,7 @@ pub fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
         LogFormat::Sena => sena::read(&args.file)?,
     };
     let robot = load_robot(args.robot.as_deref())?;
+    prepare(&args.out)?;
     let moments = drive::course(&log, robot.values.timing.period_s);
     let judged = shadow::watch(&robot, &log, &moments)?;
     let events = events::events(&moments, &judged);
