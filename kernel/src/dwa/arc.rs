@@ -195,11 +195,11 @@ impl Circle {
         }
     }
 
-    /// The turn key of a travel; 2 from a full turn on.
+    /// The turn key of a travel; infinite from a full turn on.
     pub fn key_of(self, travel: f64) -> f64 {
         let angle = travel / self.per_radian;
         if angle.is_nan() || angle >= TAU {
-            return 2.0;
+            return f64::INFINITY;
         }
         let sine = libm::sin(angle / 2.0);
         if angle <= TAU / 2.0 {

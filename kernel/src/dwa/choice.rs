@@ -4,7 +4,7 @@ use super::arc::Course;
 use super::arc::{Clearance, Turn};
 use super::lanes::{LANES, Lane, SPEEDS};
 use super::margin::{rate_for, worst_stop};
-use super::objective::{Sighting, called_for_mps, score};
+use super::objective::{Sighting, score};
 use super::survey::Survey;
 use super::types::{CANDIDATES, Candidate, Outcome, Plan, Situation, Velocity};
 use super::window::{DynamicWindow, Interval};
@@ -30,6 +30,8 @@ pub(super) struct Choice<'a> {
     pub lanes: &'a [Lane; LANES],
     pub survey: &'a Survey,
     pub sighting: Sighting,
+    /// Speeds that goal and surroundings call for, within the window.
+    pub speeds: Interval,
 }
 
 /// The best sample of one lane.
@@ -78,20 +80,7 @@ impl Choice<'_> {
         let bearing = self.sighting.bearing_rad;
         match (lane.course, aim) {
             (Course::Arc { .. }, Aim::Heading(_)) => None,
-            (Course::Arc { .. }, Aim::Position) => {
-                let turns = limits.curvature_max_per_m.is_none();
-                let turn_first = turns && bearing.abs() > tuning.turn_first_rad;
-                let (least, most) = if turn_first {
-                    (0.0, 0.0)
-                } else {
-                    let most = called_for_mps(self.situation, self.survey, self.sighting);
-                    (tuning.creep_mps.min(lane.rates.high), most)
-                };
-                Some(Interval {
-                    low: lane.rates.low.max(least),
-                    high: lane.rates.clamp(most).max(least),
-                })
-            }
+            (Course::Arc { .. }, Aim::Position) => Some(lane.rates.intersection(self.speeds)),
             (Course::Spot(turn), aim) => {
                 let (angle, enough) = match aim {
                     Aim::Position => (bearing, tuning.aligned_rad),
@@ -110,14 +99,43 @@ impl Choice<'_> {
                 })
             }
         }
+        .filter(Interval::is_some)
+    }
+
+    /// `rates` down to what brakes gently before the contact, or as slow as the window allows.
+    fn eased(&self, lane: &Lane, rates: Interval, clearance: Clearance) -> Option<Interval> {
+        let Clearance::Contact(travel) = clearance else {
+            return Some(rates);
+        };
+        let limits = &self.situation.limits;
+        let (deceleration, slowest) = match lane.curvature_per_m() {
+            Some(curvature) => (
+                limits
+                    .braking_mps2
+                    .min(limits.angular_braking_radps2 / curvature.abs().max(1e-6)),
+                self.speeds.low,
+            ),
+            None => (limits.angular_braking_radps2, rates.low),
+        };
+        let gentle = rate_for(
+            travel,
+            self.situation.tuning.comfort * deceleration,
+            limits.reaction_s + limits.period_s,
+        );
+        let eased = Interval {
+            low: rates.low,
+            high: rates.high.min(gentle.max(slowest)),
+        };
+        Some(eased).filter(Interval::is_some)
     }
 
     fn best_of(&self, index: usize, lane: &Lane, aim: Aim) -> Option<Best> {
         if !lane.rates.is_some() {
             return None;
         }
-        let rates = self.rates(lane, aim)?;
-        let clearance = self.survey.clearance(index, lane);
+        let clearance = self.survey.firm.clearance(index, lane);
+        let ahead = self.survey.ahead.clearance(index, lane);
+        let rates = self.eased(lane, self.rates(lane, aim)?, ahead)?;
         let mut found: Option<Best> = None;
         for step in 0..SPEEDS {
             let part = f64::from(u8::try_from(step).unwrap_or(0)) / 10.0;
@@ -173,10 +191,13 @@ impl Choice<'_> {
             matches!(aim, Aim::Heading(_)) || angle.abs() > self.situation.tuning.turn_first_rad;
         let index = if turn_first { turning.unwrap_or(0) } else { 0 };
         let lane = self.lanes.get(index)?;
-        match self.survey.clearance(index, lane) {
-            Clearance::Contact(_) => self.survey.contact(index),
-            Clearance::Free => None,
-        }
+        let contacts = [&self.survey.firm, &self.survey.ahead];
+        contacts
+            .iter()
+            .find_map(|contacts| match contacts.clearance(index, lane) {
+                Clearance::Contact(_) => contacts.contact(index),
+                Clearance::Free => None,
+            })
     }
 }
 

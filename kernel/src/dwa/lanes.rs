@@ -16,8 +16,10 @@ pub const LANES: usize = 63;
 const SPREAD: u16 = 58;
 /// Part of the largest speed that the most curved sample must still allow.
 const SLOWEST_PART: f64 = 0.125;
-/// How many planned stops ahead a contact still matters.
-const HORIZON_FACTOR: f64 = 2.0;
+/// Keeps a contact at the very end of the stop within the horizon.
+const HORIZON_FACTOR: f64 = 1.01;
+/// How many gentle stops ahead slowing down begins to matter.
+const AHEAD_FACTOR: f64 = 1.5;
 
 /// One sampled path and what may be driven on it.
 #[derive(Clone, Copy, Debug)]
@@ -28,8 +30,10 @@ pub(super) struct Lane {
     pub rates: Interval,
     /// The outline with the margin of the fastest rate.
     pub rect: Footprint,
-    /// Travel beyond which a contact does not matter.
+    /// Longest travel to rest: beyond it a contact does not matter to stopping.
     pub horizon: f64,
+    /// Travel beyond which a contact does not matter to slowing down gently.
+    pub horizon_ahead: f64,
 }
 
 impl Default for Lane {
@@ -43,6 +47,7 @@ impl Default for Lane {
             },
             rect: Footprint::default(),
             horizon: 0.0,
+            horizon_ahead: 0.0,
         }
     }
 }
@@ -54,7 +59,7 @@ impl Lane {
             Course::Arc {
                 curvature_per_m, ..
             } => Velocity {
-                linear_mps: rate,
+                linear_mps: window.linear.clamp(rate),
                 angular_radps: window.angular.clamp(curvature_per_m * rate),
             },
             Course::Spot(turn) => Velocity {
@@ -181,19 +186,15 @@ fn driving(situation: &Situation<'_>, window: &DynamicWindow, curvature_per_m: f
         angular_radps: rates.high * curvature_per_m,
     };
     let margin = situation.margin.driving_m(situation, fastest);
+    let horizon = HORIZON_FACTOR * worst_stop(situation, fastest).travel;
     Lane {
         course,
         track,
         rates,
         rect: situation.footprint.inflated(margin),
-        horizon: horizon(situation, fastest, rates.high),
+        horizon,
+        horizon_ahead: horizon * AHEAD_FACTOR / situation.tuning.comfort,
     }
-}
-
-/// Beyond this travel a contact matters neither to stopping nor to slowing down nor to the objective.
-fn horizon(situation: &Situation<'_>, fastest: Velocity, rate: f64) -> f64 {
-    HORIZON_FACTOR * worst_stop(situation, fastest).travel / situation.tuning.comfort
-        + rate * situation.tuning.lookahead_s
 }
 
 fn turning(situation: &Situation<'_>, window: &DynamicWindow, turn: Turn) -> Lane {
@@ -218,11 +219,13 @@ fn turning(situation: &Situation<'_>, window: &DynamicWindow, turn: Turn) -> Lan
         angular_radps: rates.high,
     };
     let margin = situation.margin.turning_m(situation, rates.high);
+    let horizon = HORIZON_FACTOR * worst_stop(situation, fastest).travel;
     Lane {
         course,
         track,
         rates,
         rect: situation.footprint.inflated(margin),
-        horizon: horizon(situation, fastest, rates.high),
+        horizon,
+        horizon_ahead: horizon * AHEAD_FACTOR / situation.tuning.comfort,
     }
 }

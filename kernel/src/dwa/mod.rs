@@ -17,6 +17,7 @@
 
 pub mod arc;
 mod choice;
+mod contacts;
 pub mod footprint;
 mod lanes;
 pub mod margin;
@@ -30,7 +31,8 @@ pub use footprint::{Footprint, Point};
 pub use lanes::{CURVATURES, LANES, SPEEDS};
 pub use margin::Margin;
 pub use types::{
-    CANDIDATES, Candidate, Goal, Limits, Obstacle, Outcome, Plan, Situation, Tuning, Velocity,
+    Arrival, CANDIDATES, Candidate, Goal, Limits, Obstacle, Outcome, Plan, Situation, Tuning,
+    Velocity,
 };
 pub use window::{DynamicWindow, Interval};
 
@@ -61,12 +63,14 @@ pub fn plan(situation: &Situation<'_>, obstacles: impl IntoIterator<Item = Obsta
         }
         survey.add(situation, &lanes, obstacle);
     }
+    let sighting = Sighting::of(situation.goal.position);
     choice::Choice {
         situation,
         window: &window,
         lanes: &lanes,
         survey: &survey,
-        sighting: Sighting::of(situation.goal.position),
+        sighting,
+        speeds: objective::speeds(situation, &survey, sighting, &window),
     }
     .plan()
 }

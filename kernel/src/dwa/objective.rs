@@ -7,9 +7,9 @@
 use super::footprint::Point;
 use super::lanes::Lane;
 use super::margin::rate_for;
-use super::survey::{Survey, along};
-use super::types::{Situation, Velocity};
-use super::window::Interval;
+use super::survey::{PARTS, PLACES, Survey, along};
+use super::types::{Arrival, Situation, Velocity};
+use super::window::{DynamicWindow, Interval};
 use core::f64::consts::PI;
 
 /// Part of the distance to the goal up to which heading is judged.
@@ -60,10 +60,15 @@ fn head(situation: &Situation<'_>, sighting: Sighting, lane: &Lane, travel: f64)
 
 /// `clear` (A.4, corrected): distance to the nearest point in [0, 1], without orientation.
 ///
-/// 0 at the inscribed circle of the outline, 1 beyond the range that counts.
-pub(super) fn clear(situation: &Situation<'_>, near_m: f64) -> f64 {
-    let spare = near_m - situation.footprint.inscribed_m();
-    (spare / situation.tuning.clearance_range_m).clamp(0.0, 1.0)
+/// 0 at the inscribed circle of the outline, 1 beyond the range that counts. Farther along
+/// the path nearness counts less, or the robot would rather turn round than enter a gap.
+pub(super) fn clear(situation: &Situation<'_>, near_m: [f64; PLACES]) -> f64 {
+    let inscribed = situation.footprint.inscribed_m();
+    let [first, ..] = PARTS;
+    near_m.iter().zip(PARTS).fold(1.0, |least, (near, part)| {
+        let spare = (near - inscribed) / situation.tuning.clearance_range_m;
+        (spare.max(0.0) + part - first).min(least)
+    })
 }
 
 /// `vel` (A.5, corrected): fast is good, near the goal slow is good.
@@ -81,37 +86,60 @@ pub(super) fn score(
     rate: f64,
 ) -> f64 {
     let tuning = &situation.tuning;
-    let travel = survey.clearance(index, lane).cut(rate * tuning.lookahead_s);
+    // Not cut at the first contact: a path into a wall must not look good for ending early,
+    // and where it ends depends on the outline's orientation.
+    let travel = rate * tuning.lookahead_s;
     let (near_m, speed) = match lane.curvature_per_m() {
-        Some(_) => {
-            let whole = lane.rates.high * tuning.lookahead_s;
-            let part = if whole > 0.0 { travel / whole } else { 0.0 };
-            (survey.near_m(index, part), rate)
-        }
-        // Where the robot turns, the straight lane begins.
-        None => (survey.here_m, 0.0),
+        Some(_) => (survey.near_m(index), rate),
+        // Turning leads nowhere.
+        None => ([survey.here_m; PLACES], 0.0),
     };
-    let near_goal = sighting.distance_m < tuning.goal_near_m;
+    let stops = situation.goal.arrival == Arrival::Stop;
+    let near_goal = stops && sighting.distance_m < tuning.goal_near_m;
     tuning.heading_weight * head(situation, sighting, lane, travel)
         + tuning.clearance_weight * clear(situation, near_m)
         + tuning.speed_weight * vel(speed, situation.limits.speed_mps, near_goal)
+}
+
+/// The part of the window's speeds that goal, objects and lateral room call for, m/s.
+///
+/// A modification of the dynamic window, as in Loh 4.2.5: no lane may keep a higher speed
+/// only because it meets the window there. If the goal lies far to the side, as slow as possible.
+pub(super) fn speeds(
+    situation: &Situation<'_>,
+    survey: &Survey,
+    sighting: Sighting,
+    window: &DynamicWindow,
+) -> Interval {
+    let tuning = &situation.tuning;
+    let turns = situation.limits.curvature_max_per_m.is_none();
+    let turn_first = turns && sighting.bearing_rad.abs() > tuning.turn_first_rad;
+    let (least, most) = if turn_first {
+        (0.0, 0.0)
+    } else {
+        let most = called_for_mps(situation, survey, sighting);
+        (tuning.creep_mps.min(window.linear.high), most)
+    };
+    Interval {
+        low: window.linear.low.max(least),
+        high: window.linear.clamp(most.max(least)),
+    }
 }
 
 /// The speed that goal, objects and lateral room call for; at least creeping, m/s.
 ///
 /// Slow near the goal, slow near objects (Loh 4.2.5), slow enough for the arc to the goal, and
 /// slow enough that the margin, which grows with speed, leaves the room there is.
-pub(super) fn called_for_mps(
-    situation: &Situation<'_>,
-    survey: &Survey,
-    sighting: Sighting,
-) -> f64 {
+fn called_for_mps(situation: &Situation<'_>, survey: &Survey, sighting: Sighting) -> f64 {
     let (limits, tuning) = (&situation.limits, &situation.tuning);
-    let to_goal = rate_for(
-        sighting.distance_m,
-        tuning.comfort * limits.braking_mps2,
-        limits.reaction_s,
-    );
+    let to_goal = match situation.goal.arrival {
+        Arrival::Stop => rate_for(
+            sighting.distance_m,
+            tuning.comfort * limits.braking_mps2,
+            limits.reaction_s,
+        ),
+        Arrival::Pass => limits.speed_mps,
+    };
     let near_objects = if tuning.object_near_m > 0.0 {
         limits.speed_mps * survey.nearest_m / tuning.object_near_m
     } else {

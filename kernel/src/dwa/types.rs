@@ -48,6 +48,16 @@ pub struct Limits {
     pub curvature_max_per_m: Option<f64>,
 }
 
+/// What to do at the goal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Arrival {
+    /// Come to rest there.
+    #[default]
+    Stop,
+    /// A via point: drive on without slowing down for it.
+    Pass,
+}
+
 /// Where to go, body frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
@@ -55,6 +65,8 @@ pub struct Goal {
     pub position: Point,
     /// Heading to take once there, radians from the robot's present heading; `None`: any.
     pub heading_rad: Option<f64>,
+    /// Whether to come to rest there.
+    pub arrival: Arrival,
     /// The position counts as reached within this distance, m.
     pub position_tolerance_m: f64,
     /// The heading counts as reached within this angle, rad.
@@ -132,7 +144,7 @@ impl Default for Tuning {
             clearance_weight: 0.2,
             speed_weight: 0.2,
             lookahead_s: 1.5,
-            clearance_range_m: 1.0,
+            clearance_range_m: 0.5,
             goal_near_m: 0.5,
             object_near_m: 0.3,
             comfort: 0.7,

@@ -66,6 +66,7 @@ fn seekur(velocity: Velocity, goal: Point) -> Situation<'static> {
         goal: Goal {
             position: goal,
             heading_rad: None,
+            arrival: Arrival::Stop,
             position_tolerance_m: 0.15,
             heading_tolerance_rad: 0.1,
         },

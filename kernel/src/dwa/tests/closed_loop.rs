@@ -1,0 +1,266 @@
+//! Small closed loops: the planner drives a perfect robot among boxes.
+
+use super::*;
+use std::vec;
+
+/// A pose in the world: x, y, heading.
+type WorldPose = [f64; 3];
+/// An axis-aligned box: least x, least y, largest x, largest y.
+type Box4 = [f64; 4];
+
+const SPACING_M: f64 = 0.02;
+const RANGE_M: f64 = 8.0;
+
+struct World {
+    points: Vec<Point>,
+}
+
+impl World {
+    fn of(boxes: &[Box4]) -> Self {
+        let mut points = vec![];
+        for &[x0, y0, x1, y1] in boxes {
+            let steps = |length: f64| (length / SPACING_M).ceil() as usize;
+            for index in 0..=steps(x1 - x0) {
+                let x = (x0 + index as f64 * SPACING_M).min(x1);
+                points.extend([[x, y0], [x, y1]]);
+            }
+            for index in 0..=steps(y1 - y0) {
+                let y = (y0 + index as f64 * SPACING_M).min(y1);
+                points.extend([[x0, y], [x1, y]]);
+            }
+        }
+        Self { points }
+    }
+
+    fn seen(&self, [x, y, heading]: WorldPose) -> Vec<Obstacle> {
+        let (sin, cos) = heading.sin_cos();
+        self.points
+            .iter()
+            .map(|point| [point[0] - x, point[1] - y])
+            .filter(|[dx, dy]| dx.hypot(*dy) < RANGE_M)
+            .map(|[dx, dy]| {
+                let position = [cos * dx + sin * dy, cos * dy - sin * dx];
+                Obstacle {
+                    position,
+                    inflation_m: SPACING_M / 2.0,
+                }
+            })
+            .collect()
+    }
+}
+
+#[derive(Debug)]
+struct Run {
+    outcome: Outcome,
+    pose: WorldPose,
+    ticks: usize,
+    travelled_m: f64,
+    turned_rad: f64,
+    /// Least distance of the bare outline from any point, m.
+    nearest_m: f64,
+    /// Ticks without any candidate while moving.
+    stuck: usize,
+}
+
+/// Drives through `goals` (via points, then the goal) until blocked, arrived or out of time.
+fn drive(
+    world: &World,
+    start: WorldPose,
+    goals: &[Point],
+    heading: Option<f64>,
+    ticks: usize,
+) -> Run {
+    let mut pose = start;
+    let mut velocity = Velocity::default();
+    let mut goals = goals.iter().peekable();
+    let mut run = Run {
+        outcome: Outcome::Moving,
+        pose,
+        ticks: 0,
+        travelled_m: 0.0,
+        turned_rad: 0.0,
+        nearest_m: f64::INFINITY,
+        stuck: 0,
+    };
+    let mut waited = 0;
+    for tick in 0..ticks {
+        run.ticks = tick;
+        let Some(&goal) = goals.peek() else { break };
+        let seen = world.seen(pose);
+        for obstacle in &seen {
+            run.nearest_m = run
+                .nearest_m
+                .min(SEEKUR.distance_squared(obstacle.position).sqrt());
+        }
+        let (sin, cos) = pose[2].sin_cos();
+        let (dx, dy) = (goal[0] - pose[0], goal[1] - pose[1]);
+        let mut situation = seekur(velocity, [cos * dx + sin * dy, cos * dy - sin * dx]);
+        let last = goals.clone().count() == 1;
+        let wrap = |angle: f64| angle.sin().atan2(angle.cos());
+        situation.goal.heading_rad = heading.filter(|_| last).map(|to| wrap(to - pose[2]));
+        situation.goal.arrival = if last { Arrival::Stop } else { Arrival::Pass };
+        situation.goal.position_tolerance_m = if last { 0.15 } else { 0.3 };
+        let plan = plan(&situation, seen);
+        run.outcome = plan.outcome;
+        if std::env::var("T").is_ok() && tick % 5 == 0 {
+            std::println!(
+                "{tick} pose {pose:.2?} v {:.3} w {:.3} goal {:.2?} best {:.3?}",
+                velocity.linear_mps,
+                velocity.angular_radps,
+                situation.goal.position,
+                plan.candidates().first()
+            );
+        }
+        let limits = situation.limits;
+        let before = velocity;
+        if let Some(best) = plan.candidates().first() {
+            velocity = best.velocity;
+            waited = 0;
+        } else {
+            if plan.outcome == Outcome::Arrived && !last {
+                goals.next();
+                continue;
+            }
+            let moving = before.linear_mps > 0.0 || before.angular_radps.abs() > 0.0;
+            run.stuck += usize::from(moving && plan.outcome != Outcome::Arrived);
+            velocity = braked(before, &limits);
+            waited += 1;
+            if waited > 100 {
+                break;
+            }
+        }
+        let (travel, turn) = (
+            velocity.linear_mps * limits.period_s,
+            velocity.angular_radps * limits.period_s,
+        );
+        let middle = pose[2] + turn / 2.0;
+        pose = [
+            pose[0] + travel * middle.cos(),
+            pose[1] + travel * middle.sin(),
+            pose[2] + turn,
+        ];
+        run.travelled_m += travel;
+        run.turned_rad += turn.abs();
+        run.pose = pose;
+    }
+    run
+}
+
+/// The curvature-holding ramp.
+fn braked(velocity: Velocity, limits: &Limits) -> Velocity {
+    let time = (velocity.linear_mps / limits.braking_mps2)
+        .max(velocity.angular_radps.abs() / limits.angular_braking_radps2);
+    let part = if time > limits.period_s {
+        1.0 - limits.period_s / time
+    } else {
+        0.0
+    };
+    Velocity {
+        linear_mps: velocity.linear_mps * part,
+        angular_radps: velocity.angular_radps * part,
+    }
+}
+
+#[test]
+fn reaches_a_free_goal_and_turns_to_its_heading() {
+    let run = drive(&World::of(&[]), [0.0; 3], &[[4.0, 1.0]], Some(-1.0), 3_000);
+    assert_eq!(run.outcome, Outcome::Arrived, "{run:?}");
+    assert!(
+        (run.pose[0] - 4.0).hypot(run.pose[1] - 1.0) < 0.2,
+        "{run:?}"
+    );
+    assert!((run.pose[2] + 1.0).abs() < 0.12, "{run:?}");
+    assert!(run.travelled_m < 4.5, "{run:?}");
+}
+
+#[test]
+fn a_goal_behind_is_turned_to_first() {
+    let run = drive(&World::of(&[]), [0.0; 3], &[[-3.0, 0.2]], None, 3_000);
+    assert_eq!(run.outcome, Outcome::Arrived, "{run:?}");
+    assert!(run.travelled_m < 3.5, "{run:?}");
+}
+
+/// Loh 6.2.1 saw the robot circle an object beside its path: it must pass it.
+#[test]
+fn an_object_beside_the_path_is_not_orbited() {
+    for (left, side) in [(true, 1.0), (false, -1.0)] {
+        for offset in [0.7, 0.9, 1.2] {
+            let middle = side * offset;
+            let world = World::of(&[[2.5, middle - 0.2, 2.9, middle + 0.2]]);
+            let run = drive(&world, [0.0; 3], &[[6.0, 0.0]], None, 3_000);
+            assert_eq!(
+                run.outcome,
+                Outcome::Arrived,
+                "left {left} {offset}: {run:?}"
+            );
+            assert!(run.travelled_m < 6.8, "{run:?}");
+            assert!(run.turned_rad < 3.0, "{run:?}");
+            assert!(run.nearest_m > 0.015, "{run:?}");
+        }
+    }
+}
+
+/// Loh 6.2.1: offset and width of each passage, and whether the robot of 0.84 m may pass.
+const PASSAGES: [(f64, f64, bool); 9] = [
+    (0.0, 1.1, true),
+    (0.05, 1.0, true),
+    (0.1, 0.9, true),
+    (-0.05, 1.0, true),
+    (0.0, 0.9, true),
+    (0.05, 0.8, false),
+    (-0.1, 0.9, true),
+    (-0.05, 0.8, false),
+    (0.0, 0.7, false),
+];
+
+/// Two boxes 0.5 m deep with a gap, 3 m ahead.
+fn passage(offset: f64, width: f64) -> World {
+    let (right, left) = (offset - width / 2.0, offset + width / 2.0);
+    World::of(&[[3.0, left, 3.5, left + 2.0], [3.0, right - 2.0, 3.5, right]])
+}
+
+#[test]
+fn six_of_nine_passages_are_driven_and_three_stopped_at() {
+    for (number, (offset, width, passable)) in PASSAGES.iter().copied().enumerate() {
+        let world = passage(offset, width);
+        let via = [[1.2, offset], [2.2, offset], [4.4, offset], [6.0, 0.0]];
+        let run = drive(&world, [0.0; 3], &via, None, 6_000);
+        std::println!("passage {} {run:.3?}", number + 1);
+        assert!(run.nearest_m > 0.0, "passage {}: {run:?}", number + 1);
+        if passable {
+            assert_eq!(
+                run.outcome,
+                Outcome::Arrived,
+                "passage {}: {run:?}",
+                number + 1
+            );
+        } else {
+            assert!(
+                matches!(run.outcome, Outcome::Blocked(_)),
+                "passage {}: {run:?}",
+                number + 1
+            );
+            assert!(
+                run.pose[0] + SEEKUR.front_m < 3.0,
+                "passage {}: {run:?}",
+                number + 1
+            );
+        }
+        assert!(run.turned_rad < 4.0, "passage {}: {run:?}", number + 1);
+    }
+}
+
+#[test]
+fn a_wall_ahead_blocks_and_names_its_point() {
+    let world = World::of(&[[3.0, -3.0, 3.2, 3.0]]);
+    let run = drive(&world, [0.0; 3], &[[6.0, 0.0]], None, 3_000);
+    let Outcome::Blocked(Some(point)) = run.outcome else {
+        panic!("{run:?}")
+    };
+    assert!(
+        point[0] > SEEKUR.front_m && point[1].abs() < 0.6,
+        "{point:?}"
+    );
+    assert!(run.pose[0] + SEEKUR.front_m < 3.0, "{run:?}");
+    assert!(run.nearest_m > 0.015, "{run:?}");
+}
