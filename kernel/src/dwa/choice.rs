@@ -135,7 +135,7 @@ impl Choice<'_> {
         }
         let clearance = self.survey.firm.clearance(index, lane);
         let ahead = self.survey.ahead.clearance(index, lane);
-        let rates = self.eased(lane, self.rates(lane, aim)?, ahead)?;
+        let rates = self.eased(lane, self.rates(lane, aim)?, clearance.nearer(ahead))?;
         let mut found: Option<Best> = None;
         for step in 0..SPEEDS {
             let part = f64::from(u8::try_from(step).unwrap_or(0)) / 10.0;

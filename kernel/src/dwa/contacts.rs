@@ -12,8 +12,8 @@ use super::types::{Obstacle, Situation};
 const PADDED: usize = 64;
 /// Relative slack of every comparison that skips a point; far above rounding.
 const SLACK: f64 = 1e-6;
-/// How much nearer a point within the margin may come before it blocks, m.
-const NEARER_M: f64 = 1e-3;
+/// A point this near to an edge lies on it, m.
+const ON_EDGE_M: f64 = 1e-6;
 
 /// What is swept along a lane, and how far.
 #[derive(Clone, Copy, Debug, Default)]
@@ -199,10 +199,12 @@ fn contact_key(
         } else {
             situation.margin.fixed_m + obstacle.inflation_m
         };
-        if outside <= least {
+        let reached = situation.footprint.inflated(outside);
+        if outside <= least || approaches(lane, &reached, point) {
             return 0.0;
         }
-        situation.footprint.inflated((outside - NEARER_M).max(0.0))
+        // Just inside of the point: whether it comes back later.
+        situation.footprint.inflated((outside - ON_EDGE_M).max(0.0))
     } else {
         inflated
     };
@@ -210,6 +212,19 @@ fn contact_key(
         Track::Line { sense } => line_travel(&rect, sense, point),
         Track::Circle(circle) => turn_key(&rect, circle, point),
     }
+}
+
+/// Whether `point`, on the edge of `rect`, moves inward when the robot sets out on `lane`.
+fn approaches(lane: &Lane, rect: &Footprint, [x, y]: Point) -> bool {
+    let (along, across) = match lane.track {
+        Track::Line { sense } => (-sense, 0.0),
+        Track::Circle(circle) => (circle.sense * (y - circle.centre_y), -circle.sense * x),
+    };
+    let on = |beyond: f64| beyond > -ON_EDGE_M;
+    (on(x - rect.front_m) && along < 0.0)
+        || (on(-rect.rear_m - x) && along > 0.0)
+        || (on(y - rect.left_m) && across < 0.0)
+        || (on(-rect.right_m - y) && across > 0.0)
 }
 
 /// What a point must be nearer than to be touched within `key`: (chord / radius)².

@@ -16,8 +16,8 @@ pub const LANES: usize = 63;
 const SPREAD: u16 = 58;
 /// Part of the largest speed that the most curved sample must still allow.
 const SLOWEST_PART: f64 = 0.125;
-/// Keeps a contact at the very end of the stop within the horizon.
-const HORIZON_FACTOR: f64 = 1.01;
+/// How many periods before the last moment slowing down begins.
+const EASE_PERIODS: f64 = 5.0;
 /// How many gentle stops ahead slowing down begins to matter.
 const AHEAD_FACTOR: f64 = 1.5;
 
@@ -30,7 +30,7 @@ pub(super) struct Lane {
     pub rates: Interval,
     /// The outline with the margin of the fastest rate.
     pub rect: Footprint,
-    /// Longest travel to rest: beyond it a contact does not matter to stopping.
+    /// Longest travel to rest and a little more: what stopping in time must look at.
     pub horizon: f64,
     /// Travel beyond which a contact does not matter to slowing down gently.
     pub horizon_ahead: f64,
@@ -186,14 +186,15 @@ fn driving(situation: &Situation<'_>, window: &DynamicWindow, curvature_per_m: f
         angular_radps: rates.high * curvature_per_m,
     };
     let margin = situation.margin.driving_m(situation, fastest);
-    let horizon = HORIZON_FACTOR * worst_stop(situation, fastest).travel;
+    let stop = worst_stop(situation, fastest).travel;
+    let horizon = stop + EASE_PERIODS * rates.high * situation.limits.period_s;
     Lane {
         course,
         track,
         rates,
         rect: situation.footprint.inflated(margin),
         horizon,
-        horizon_ahead: horizon * AHEAD_FACTOR / situation.tuning.comfort,
+        horizon_ahead: stop * AHEAD_FACTOR / situation.tuning.comfort,
     }
 }
 
@@ -219,13 +220,14 @@ fn turning(situation: &Situation<'_>, window: &DynamicWindow, turn: Turn) -> Lan
         angular_radps: rates.high,
     };
     let margin = situation.margin.turning_m(situation, rates.high);
-    let horizon = HORIZON_FACTOR * worst_stop(situation, fastest).travel;
+    let stop = worst_stop(situation, fastest).travel;
+    let horizon = stop + EASE_PERIODS * rates.high * situation.limits.period_s;
     Lane {
         course,
         track,
         rates,
         rect: situation.footprint.inflated(margin),
         horizon,
-        horizon_ahead: horizon * AHEAD_FACTOR / situation.tuning.comfort,
+        horizon_ahead: stop * AHEAD_FACTOR / situation.tuning.comfort,
     }
 }

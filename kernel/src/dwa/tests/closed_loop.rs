@@ -1,6 +1,13 @@
 //! Small closed loops: the planner drives a perfect robot among boxes.
 
 use super::*;
+use crate::geometry::rect::Rect;
+use crate::guard::check::{CloudPoint, first_touch};
+use crate::guard::hull::{Hull, Vertex};
+use crate::guard::plan::Dynamics;
+use crate::guard::tube::{Tube, TubeParameters};
+use crate::input::Twist;
+use crate::units::{AngularSpeed, Curvature, Speed};
 use std::vec;
 
 /// A pose in the world: x, y, heading.
@@ -60,6 +67,8 @@ struct Run {
     nearest_m: f64,
     /// Ticks without any candidate while moving.
     stuck: usize,
+    /// Ticks in which the guard refuses the best candidate.
+    refused: usize,
 }
 
 /// Drives through `goals` (via points, then the goal) until blocked, arrived or out of time.
@@ -81,6 +90,7 @@ fn drive(
         turned_rad: 0.0,
         nearest_m: f64::INFINITY,
         stuck: 0,
+        refused: 0,
     };
     let mut waited = 0;
     for tick in 0..ticks {
@@ -100,20 +110,13 @@ fn drive(
         situation.goal.heading_rad = heading.filter(|_| last).map(|to| wrap(to - pose[2]));
         situation.goal.arrival = if last { Arrival::Stop } else { Arrival::Pass };
         situation.goal.position_tolerance_m = if last { 0.15 } else { 0.3 };
-        let plan = plan(&situation, seen);
+        let plan = plan(&situation, seen.iter().copied());
         run.outcome = plan.outcome;
-        if std::env::var("T").is_ok() && tick % 5 == 0 {
-            std::println!(
-                "{tick} pose {pose:.2?} v {:.3} w {:.3} goal {:.2?} best {:.3?}",
-                velocity.linear_mps,
-                velocity.angular_radps,
-                situation.goal.position,
-                plan.candidates().first()
-            );
-        }
         let limits = situation.limits;
         let before = velocity;
         if let Some(best) = plan.candidates().first() {
+            let known: Vec<_> = seen.iter().map(|one| guard_point(one.position)).collect();
+            run.refused += usize::from(is_refused(&situation, best.velocity, &known));
             velocity = best.velocity;
             waited = 0;
         } else {
@@ -144,6 +147,70 @@ fn drive(
         run.pose = pose;
     }
     run
+}
+
+/// What the guard knows of a point: sensor error and half the gap as its own inflation.
+fn guard_point([x, y]: Point) -> CloudPoint {
+    CloudPoint {
+        x_mm: (x * 1e3).round() as i16,
+        y_mm: (y * 1e3).round() as i16,
+        extra_mm: 15,
+        joined: false,
+    }
+}
+
+/// Whether the guard refuses `candidate` for a known point.
+fn is_refused(situation: &Situation<'_>, candidate: Velocity, known: &[CloudPoint]) -> bool {
+    let micro = |value: f64| (value * 1e6).ceil() as u64;
+    let eighths = |value: f64| (value * 8e3).ceil() as i32;
+    let (foot, limits, margin) = (&situation.footprint, &situation.limits, &situation.margin);
+    let footprint = Rect {
+        front: eighths(foot.front_m),
+        rear: eighths(foot.rear_m),
+        left: eighths(foot.left_m),
+        right: eighths(foot.right_m),
+    };
+    let parameters = TubeParameters {
+        dynamics: Dynamics {
+            braking: micro(limits.braking_mps2),
+            angular_braking: micro(limits.angular_braking_radps2),
+            speed_tolerance: micro(margin.speed_tolerance_mps),
+            turn_tolerance: micro(margin.turn_tolerance_radps),
+            corner: micro(foot.corner_m()),
+            ..Dynamics::default()
+        },
+        footprint,
+        tracking_um: 5_000,
+        obstacle_speed: 0,
+    };
+    let mut hull = Hull::default();
+    for velocity in [situation.velocity, candidate] {
+        hull.push(Vertex {
+            twist: Twist {
+                linear: Speed::from_um_per_s((velocity.linear_mps * 1e6).round() as i32),
+                angular: AngularSpeed::from_urad_per_s(
+                    (velocity.angular_radps * 1e6).round() as i32
+                ),
+            },
+            curvature: Curvature::ZERO,
+        });
+    }
+    match Tube::new(&parameters, &hull, micro(limits.reaction_s)) {
+        Ok(tube) => {
+            let t = first_touch(&tube, footprint, known, None);
+            if let Some(t) = t {
+                std::println!(
+                    "REF {:?} {candidate:?} {:?} margin {} {:?}",
+                    situation.velocity,
+                    t.point,
+                    margin.driving_m(situation, candidate),
+                    t.budget
+                );
+            }
+            t.is_some()
+        }
+        Err(refusal) => panic!("{refusal:?} {candidate:?}"),
+    }
 }
 
 /// The curvature-holding ramp.
@@ -247,6 +314,18 @@ fn six_of_nine_passages_are_driven_and_three_stopped_at() {
             );
         }
         assert!(run.turned_rad < 4.0, "passage {}: {run:?}", number + 1);
+    }
+}
+
+/// Dead ahead or nearly so: round it, not into it, and not round and round.
+#[test]
+fn an_object_in_the_way_is_passed() {
+    for middle in [0.05, 0.2, -0.3] {
+        let world = World::of(&[[3.0, middle - 0.2, 3.4, middle + 0.2]]);
+        let run = drive(&world, [0.0; 3], &[[7.0, 0.0]], None, 3_000);
+        std::println!("in the way {middle} {run:.3?}");
+        assert_eq!(run.outcome, Outcome::Arrived, "{middle}: {run:?}");
+        assert!(run.travelled_m < 9.0 && run.turned_rad < 5.0, "{run:?}");
     }
 }
 

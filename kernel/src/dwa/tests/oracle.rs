@@ -291,59 +291,59 @@ fn met_by(course: Course, [x, y]: Point, travel: f64) -> Point {
     ]
 }
 
-fn compare(seed: u64, cases: usize, judge: fn(&Case) -> Option<f64>) {
+/// Compares `CASES` random cases with `judge`; `arbiter` decides where they differ.
+///
+/// Returns how often the arbiter found the judge wrong.
+fn compare(seed: u64, judge: fn(&Case) -> Option<f64>, arbiter: fn(&Case) -> Option<f64>) -> usize {
     let mut random = Random(seed);
-    let (mut grazing, mut contacts) = (0, 0);
-    for number in 0..cases {
+    let (mut grazing, mut contacts, mut overruled) = (0, 0, 0);
+    for number in 0..CASES {
         let case = Case::random(&mut random);
-        if std::env::var("X").is_ok() {
-            std::eprintln!(
-                "CASE {number} {:?} {:?} {:?}",
-                case.footprint,
-                case.course,
-                case.point
-            );
-        }
         let judged = judge(&case);
         contacts += usize::from(judged.is_some_and(|travel| travel > 0.0));
-        match case.agrees(judged) {
+        let agrees = match case.agrees(judged) {
+            Some(false) => {
+                assert!(
+                    judged.is_none(),
+                    "case {number}: {judged:?} is too early or too late"
+                );
+                overruled += 1;
+                case.agrees(arbiter(&case))
+            }
+            agrees => agrees,
+        };
+        match agrees {
             Some(true) => {}
             None => grazing += 1,
-            Some(false) if std::env::var("X").is_ok() => {
-                grazing += 1;
-                contacts += 0;
-                std::println!(
-                    "MISS {:?} {:?} walk {:?}",
-                    case.ours(0.0),
-                    judged,
-                    case.walk()
-                );
-            }
             Some(false) => panic!(
-                "case {number}: {:?} {:?} {:?}: ours {:?}, judge {judged:?}, walk {:?}",
+                "case {number}: {:?} {:?} {:?}: ours {:?}, judge {judged:?}, arbiter {:?}",
                 case.footprint,
                 case.course,
                 case.point,
                 case.ours(0.0),
-                case.walk(),
+                arbiter(&case),
             ),
         }
     }
     assert!(
-        grazing * 500 < cases,
+        grazing * 100 < CASES,
         "{grazing} grazing cases explain too much"
     );
-    assert!(contacts * 5 > cases, "only {contacts} contacts");
+    assert!(contacts * 3 > CASES, "only {contacts} contacts");
+    std::println!("{CASES} cases, {contacts} contacts, {grazing} grazing, {overruled} overruled");
+    overruled
 }
 
 #[test]
 fn agrees_with_parry_nonlinear_casts() {
-    compare(0x5eed_0001, CASES, Case::parry);
+    // Now and then the cast misses a contact that the walk finds.
+    let overruled = compare(0x5eed_0001, Case::parry, Case::walk);
+    assert!(overruled * 10_000 <= CASES, "{overruled}");
 }
 
 #[test]
 fn agrees_with_a_walk_along_the_arc() {
-    compare(0x5eed_0002, CASES, Case::walk);
+    assert_eq!(compare(0x5eed_0002, Case::walk, Case::walk), 0);
 }
 
 #[test]
