@@ -6,7 +6,7 @@
 use super::arc::{Clearance, Track, line_travel, turn_key};
 use super::footprint::{Footprint, Point};
 use super::lanes::{LANES, Lane};
-use super::types::{Obstacle, Situation};
+use super::types::{Obstacle, Situation, Velocity};
 
 /// Lanes padded to a multiple of what vector units take.
 const PADDED: usize = 64;
@@ -20,6 +20,8 @@ const ON_EDGE_M: f64 = 1e-6;
 pub(super) struct Swept {
     /// The inflated outline.
     pub rect: Footprint,
+    /// The margin where the robot is now, m.
+    pub start_m: f64,
     /// Travel beyond which a contact does not matter.
     pub horizon: f64,
 }
@@ -118,7 +120,7 @@ impl Contacts {
         ) else {
             return;
         };
-        let key = contact_key(situation, lane, &swept.rect, obstacle);
+        let key = contact_key(situation, lane, swept, obstacle);
         if key < *least {
             *least = key;
             *contact = obstacle.position;
@@ -182,25 +184,24 @@ impl Sieve {
 
 /// The key of the first contact with `obstacle` on `lane`.
 ///
-/// A point that is within the margin already, but not within its fixed part (at rest: not
-/// within the outline), blocks only a motion that brings it nearer.
-fn contact_key(
-    situation: &Situation<'_>,
-    lane: &Lane,
-    rect: &Footprint,
-    obstacle: Obstacle,
-) -> f64 {
+/// A point that is within the margin already, but not within that of the start (at rest: not
+/// within the outline), blocks only a motion that brings it nearer, now or by what may be
+/// executing still.
+fn contact_key(situation: &Situation<'_>, lane: &Lane, swept: &Swept, obstacle: Obstacle) -> f64 {
     let point = obstacle.position;
-    let inflated = rect.inflated(obstacle.inflation_m);
+    let inflated = swept.rect.inflated(obstacle.inflation_m);
     let rect = if inflated.contains(point) {
         let outside = situation.footprint.outside_m(point);
         let least = if situation.is_at_rest() {
             0.0
         } else {
-            situation.margin.fixed_m + obstacle.inflation_m
+            swept.start_m + obstacle.inflation_m
         };
         let reached = situation.footprint.inflated(outside);
-        if outside <= least || approaches(lane, &reached, point) {
+        let mut motions = situation
+            .possible()
+            .chain(core::iter::once(lane.direction()));
+        if outside <= least || motions.any(|motion| approaches(motion, &reached, point)) {
             return 0.0;
         }
         // Just inside of the point: whether it comes back later.
@@ -214,12 +215,10 @@ fn contact_key(
     }
 }
 
-/// Whether `point`, on the edge of `rect`, moves inward when the robot sets out on `lane`.
-fn approaches(lane: &Lane, rect: &Footprint, [x, y]: Point) -> bool {
-    let (along, across) = match lane.track {
-        Track::Line { sense } => (-sense, 0.0),
-        Track::Circle(circle) => (circle.sense * (y - circle.centre_y), -circle.sense * x),
-    };
+/// Whether `point`, on the edge of `rect`, moves inward when the robot moves with `velocity`.
+fn approaches(velocity: Velocity, rect: &Footprint, [x, y]: Point) -> bool {
+    let along = velocity.angular_radps * y - velocity.linear_mps;
+    let across = -velocity.angular_radps * x;
     let on = |beyond: f64| beyond > -ON_EDGE_M;
     (on(x - rect.front_m) && along < 0.0)
         || (on(-rect.rear_m - x) && along > 0.0)

@@ -30,6 +30,8 @@ pub(super) struct Lane {
     pub rates: Interval,
     /// The outline with the margin of the fastest rate.
     pub rect: Footprint,
+    /// The margin where the robot is now, m.
+    pub start_m: f64,
     /// Longest travel to rest and a little more: what stopping in time must look at.
     pub horizon: f64,
     /// Travel beyond which a contact does not matter to slowing down gently.
@@ -46,6 +48,7 @@ impl Default for Lane {
                 high: 0.0,
             },
             rect: Footprint::default(),
+            start_m: 0.0,
             horizon: 0.0,
             horizon_ahead: 0.0,
         }
@@ -65,6 +68,22 @@ impl Lane {
             Course::Spot(turn) => Velocity {
                 linear_mps: 0.0,
                 angular_radps: if turn == Turn::Left { rate } else { -rate },
+            },
+        }
+    }
+
+    /// The motion of this lane at unit rate.
+    pub fn direction(&self) -> Velocity {
+        match self.course {
+            Course::Arc {
+                curvature_per_m, ..
+            } => Velocity {
+                linear_mps: 1.0,
+                angular_radps: curvature_per_m,
+            },
+            Course::Spot(turn) => Velocity {
+                linear_mps: 0.0,
+                angular_radps: if turn == Turn::Left { 1.0 } else { -1.0 },
             },
         }
     }
@@ -185,14 +204,15 @@ fn driving(situation: &Situation<'_>, window: &DynamicWindow, curvature_per_m: f
         linear_mps: rates.high,
         angular_radps: rates.high * curvature_per_m,
     };
-    let margin = situation.margin.driving_m(situation, fastest);
+    let inflation = situation.margin.driving(situation, fastest);
     let stop = worst_stop(situation, fastest).travel;
     let horizon = stop + EASE_PERIODS * rates.high * situation.limits.period_s;
     Lane {
         course,
         track,
         rates,
-        rect: situation.footprint.inflated(margin),
+        rect: situation.footprint.inflated(inflation.end_m),
+        start_m: inflation.start_m,
         horizon,
         horizon_ahead: stop * AHEAD_FACTOR / situation.tuning.comfort,
     }
@@ -219,14 +239,15 @@ fn turning(situation: &Situation<'_>, window: &DynamicWindow, turn: Turn) -> Lan
         linear_mps: 0.0,
         angular_radps: rates.high,
     };
-    let margin = situation.margin.turning_m(situation, rates.high);
+    let inflation = situation.margin.turning(situation, rates.high);
     let stop = worst_stop(situation, fastest).travel;
     let horizon = stop + EASE_PERIODS * rates.high * situation.limits.period_s;
     Lane {
         course,
         track,
         rates,
-        rect: situation.footprint.inflated(margin),
+        rect: situation.footprint.inflated(inflation.end_m),
+        start_m: inflation.start_m,
         horizon,
         horizon_ahead: stop * AHEAD_FACTOR / situation.tuning.comfort,
     }

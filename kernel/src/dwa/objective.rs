@@ -167,7 +167,7 @@ fn room_mps(situation: &Situation<'_>, room_m: f64) -> f64 {
             linear_mps: speed,
             angular_radps: 0.0,
         };
-        situation.margin.alone_m(situation, straight) <= room_m
+        situation.margin.alone(situation, straight).end_m <= room_m
     };
     let mut range = Interval {
         low: 0.0,

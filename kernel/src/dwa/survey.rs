@@ -39,14 +39,16 @@ impl Survey {
             linear_mps: situation.tuning.creep_mps,
             angular_radps: 0.0,
         };
-        let slow = bare.inflated(situation.margin.alone_m(situation, creeping));
+        let creep = situation.margin.alone(situation, creeping);
         let mut survey = Self {
             firm: Contacts::new(lanes, bare, |lane| Swept {
                 rect: lane.rect,
+                start_m: lane.start_m,
                 horizon: lane.horizon,
             }),
             ahead: Contacts::new(lanes, bare, |lane| Swept {
-                rect: slow,
+                rect: bare.inflated(creep.end_m),
+                start_m: creep.start_m,
                 horizon: lane.horizon_ahead,
             }),
             near_squared: [[f64::INFINITY; CURVATURES]; PLACES],

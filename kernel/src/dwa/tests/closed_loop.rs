@@ -197,17 +197,16 @@ fn is_refused(situation: &Situation<'_>, candidate: Velocity, known: &[CloudPoin
     }
     match Tube::new(&parameters, &hull, micro(limits.reaction_s)) {
         Ok(tube) => {
-            let t = first_touch(&tube, footprint, known, None);
-            if let Some(t) = t {
+            let touch = first_touch(&tube, footprint, known, None);
+            if let Some(touch) = touch {
                 std::println!(
-                    "REF {:?} {candidate:?} {:?} margin {} {:?}",
+                    "REF {:?} {candidate:?} {:?} {:?}",
                     situation.velocity,
-                    t.point,
-                    margin.driving_m(situation, candidate),
-                    t.budget
+                    touch.point,
+                    touch.budget.total()
                 );
             }
-            t.is_some()
+            touch.is_some()
         }
         Err(refusal) => panic!("{refusal:?} {candidate:?}"),
     }
