@@ -12,6 +12,8 @@ use super::types::{Obstacle, Situation, Velocity};
 const PADDED: usize = 64;
 /// Relative slack of every comparison that skips a point; far above rounding.
 const SLACK: f64 = 1e-6;
+/// How slowly a motion in flight may come nearer to a point without spoiling all that follow, m/s.
+const SLOWLY_MPS: f64 = 5e-3;
 /// A point this near to an edge lies on it, m.
 const ON_EDGE_M: f64 = 1e-6;
 
@@ -198,10 +200,11 @@ fn contact_key(situation: &Situation<'_>, lane: &Lane, swept: &Swept, obstacle: 
             swept.start_m + obstacle.inflation_m
         };
         let reached = situation.footprint.inflated(outside);
-        let mut motions = situation
-            .possible()
-            .chain(core::iter::once(lane.direction()));
-        if outside <= least || motions.any(|motion| approaches(motion, &reached, point)) {
+        let mut possible = situation.possible();
+        if outside <= least
+            || approaches(lane.direction(), &reached, point, 0.0)
+            || possible.any(|motion| approaches(motion, &reached, point, SLOWLY_MPS))
+        {
             return 0.0;
         }
         // Just inside of the point: whether it comes back later.
@@ -215,15 +218,16 @@ fn contact_key(situation: &Situation<'_>, lane: &Lane, swept: &Swept, obstacle: 
     }
 }
 
-/// Whether `point`, on the edge of `rect`, moves inward when the robot moves with `velocity`.
-fn approaches(velocity: Velocity, rect: &Footprint, [x, y]: Point) -> bool {
+/// Whether `point`, on the edge of `rect`, moves inward faster than `slowly_mps` when the robot
+/// moves with `velocity`.
+fn approaches(velocity: Velocity, rect: &Footprint, [x, y]: Point, slowly_mps: f64) -> bool {
     let along = velocity.angular_radps * y - velocity.linear_mps;
     let across = -velocity.angular_radps * x;
     let on = |beyond: f64| beyond > -ON_EDGE_M;
-    (on(x - rect.front_m) && along < 0.0)
-        || (on(-rect.rear_m - x) && along > 0.0)
-        || (on(y - rect.left_m) && across < 0.0)
-        || (on(-rect.right_m - y) && across > 0.0)
+    (on(x - rect.front_m) && along < -slowly_mps)
+        || (on(-rect.rear_m - x) && along > slowly_mps)
+        || (on(y - rect.left_m) && across < -slowly_mps)
+        || (on(-rect.right_m - y) && across > slowly_mps)
 }
 
 /// What a point must be nearer than to be touched within `key`: (chord / radius)².

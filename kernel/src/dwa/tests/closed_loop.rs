@@ -112,12 +112,19 @@ fn drive(
         situation.goal.position_tolerance_m = if last { 0.15 } else { 0.3 };
         let plan = plan(&situation, seen.iter().copied());
         run.outcome = plan.outcome;
-        let limits = situation.limits;
-        let before = velocity;
-        if let Some(best) = plan.candidates().first() {
-            let known: Vec<_> = seen.iter().map(|one| guard_point(one.position)).collect();
-            run.refused += usize::from(is_refused(&situation, best.velocity, &known));
-            velocity = best.velocity;
+        let (limits, before) = (situation.limits, velocity);
+        let known: Vec<_> = seen.iter().map(|one| guard_point(one.position)).collect();
+        let accepted = |one: &&Candidate| !is_refused(&situation, one.velocity, &known);
+        let best = plan.candidates().first();
+        run.refused += usize::from(best.is_some_and(|best| !accepted(&best)));
+        // Leaving rest the guard excuses what it knows to be near; this loop does not model that.
+        let chosen = if before_is_rest(velocity) {
+            best
+        } else {
+            plan.candidates().iter().find(accepted)
+        };
+        if let Some(chosen) = chosen {
+            velocity = chosen.velocity;
             waited = 0;
         } else {
             if plan.outcome == Outcome::Arrived && !last {
@@ -147,6 +154,10 @@ fn drive(
         run.pose = pose;
     }
     run
+}
+
+fn before_is_rest(velocity: Velocity) -> bool {
+    velocity == Velocity::default()
 }
 
 /// What the guard knows of a point: sensor error and half the gap as its own inflation.
@@ -196,18 +207,7 @@ fn is_refused(situation: &Situation<'_>, candidate: Velocity, known: &[CloudPoin
         });
     }
     match Tube::new(&parameters, &hull, micro(limits.reaction_s)) {
-        Ok(tube) => {
-            let touch = first_touch(&tube, footprint, known, None);
-            if let Some(touch) = touch {
-                std::println!(
-                    "REF {:?} {candidate:?} {:?} {:?}",
-                    situation.velocity,
-                    touch.point,
-                    touch.budget.total()
-                );
-            }
-            touch.is_some()
-        }
+        Ok(tube) => first_touch(&tube, footprint, known, None).is_some(),
         Err(refusal) => panic!("{refusal:?} {candidate:?}"),
     }
 }
@@ -291,9 +291,9 @@ fn six_of_nine_passages_are_driven_and_three_stopped_at() {
         let world = passage(offset, width);
         let via = [[1.2, offset], [2.2, offset], [4.4, offset], [6.0, 0.0]];
         let run = drive(&world, [0.0; 3], &via, None, 6_000);
-        std::println!("passage {} {run:.3?}", number + 1);
         assert!(run.nearest_m > 0.0, "passage {}: {run:?}", number + 1);
         if passable {
+            assert_eq!(run.refused, 0, "passage {}: {run:?}", number + 1);
             assert_eq!(
                 run.outcome,
                 Outcome::Arrived,
@@ -322,9 +322,10 @@ fn an_object_in_the_way_is_passed() {
     for middle in [0.05, 0.2, -0.3] {
         let world = World::of(&[[3.0, middle - 0.2, 3.4, middle + 0.2]]);
         let run = drive(&world, [0.0; 3], &[[7.0, 0.0]], None, 3_000);
-        std::println!("in the way {middle} {run:.3?}");
         assert_eq!(run.outcome, Outcome::Arrived, "{middle}: {run:?}");
         assert!(run.travelled_m < 9.0 && run.turned_rad < 5.0, "{run:?}");
+        // Passing at 3 cm, the best candidate is refused now and then; the next one is taken.
+        assert!(run.refused * 100 < run.ticks, "{run:?}");
     }
 }
 
