@@ -106,7 +106,9 @@ pub fn arc_distance(footprint: &Footprint, course: Course, point: Point) -> Clea
         }
         Track::Circle(circle) => {
             let (least, largest) = footprint.annulus_m(circle.centre_y);
-            let radius = libm::hypot(point[0], point[1] - circle.centre_y);
+            let [x, y] = point;
+            let across = y - circle.centre_y;
+            let radius = libm::sqrt(x * x + across * across);
             if radius < least - TOUCH_M || radius > largest + TOUCH_M {
                 return Clearance::Free;
             }

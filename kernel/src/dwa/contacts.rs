@@ -12,6 +12,8 @@ use super::types::{Obstacle, Situation, Velocity};
 const PADDED: usize = 64;
 /// Relative slack of every comparison that skips a point; far above rounding.
 const SLACK: f64 = 1e-6;
+/// A corner moves by less than this times the inflation (the root of two).
+const CORNER_GROWTH: f64 = 1.5;
 /// How slowly a motion in flight may come nearer to a point without spoiling all that follow, m/s.
 const SLOWLY_MPS: f64 = 5e-3;
 /// A point this near to an edge lies on it, m.
@@ -39,6 +41,10 @@ pub(super) struct Contacts {
     sieve: Sieve,
     /// Largest margin of any lane, m.
     widest_m: f64,
+    /// Longest path of any point of the outline within the horizon, m.
+    reach_m: f64,
+    /// How much longer per metre of a point's own inflation.
+    reach_per_inflation: f64,
 }
 
 /// What decides quickly whether a point can matter to a circular lane.
@@ -66,6 +72,8 @@ impl Contacts {
                 chord: [0.0; PADDED],
             },
             widest_m: 0.0,
+            reach_m: 0.0,
+            reach_per_inflation: 0.0,
         };
         for (index, lane) in lanes.iter().enumerate() {
             if lane.rates.is_some() {
@@ -79,6 +87,12 @@ impl Contacts {
     fn prepare(&mut self, index: usize, lane: &Lane, swept: Swept, bare: &Footprint) {
         set(&mut self.swept, index, swept);
         self.widest_m = self.widest_m.max(swept.rect.front_m - bare.front_m);
+        let (own, turn) = match lane.curvature_per_m() {
+            Some(curvature) => (swept.horizon, swept.horizon * curvature.abs()),
+            None => (0.0, swept.horizon),
+        };
+        self.reach_m = self.reach_m.max(own + turn * swept.rect.corner_m());
+        self.reach_per_inflation = self.reach_per_inflation.max(turn * CORNER_GROWTH);
         match lane.track {
             Track::Line { .. } => set(&mut self.key, index, swept.horizon),
             Track::Circle(circle) => {
@@ -100,6 +114,10 @@ impl Contacts {
         let widest = self.widest_m + obstacle.inflation_m;
         let outline = situation.footprint.inflated(widest);
         let away = outline.distance_squared(obstacle.position) * (1.0 - SLACK);
+        let reach = self.reach_m + self.reach_per_inflation * obstacle.inflation_m;
+        if away > reach * reach {
+            return;
+        }
         let passes = self.sieve.passes(obstacle, away);
         for (index, (lane, pass)) in lanes.iter().zip(passes).enumerate() {
             let straight = matches!(lane.track, Track::Line { .. }) && lane.rates.is_some();
@@ -166,7 +184,7 @@ impl Sieve {
         // An edge moves by the inflation, a corner by the root of two of it.
         let (edge, corner) = (
             obstacle.inflation_m + SLACK,
-            1.5 * obstacle.inflation_m + SLACK,
+            CORNER_GROWTH * obstacle.inflation_m + SLACK,
         );
         let mut passes = [false; PADDED];
         let columns = self.centre_y.iter().zip(&self.least);

@@ -83,7 +83,7 @@ impl Footprint {
             .max(-self.right_m - centre_y)
             .max(0.0);
         let across = (self.left_m - centre_y).max(self.right_m + centre_y);
-        let largest = libm::hypot(self.front_m.max(self.rear_m), across);
-        (least, largest)
+        let along = self.front_m.max(self.rear_m);
+        (least, libm::sqrt(along * along + across * across))
     }
 }

@@ -85,7 +85,7 @@ impl Survey {
     pub fn add(&mut self, situation: &Situation<'_>, lanes: &[Lane; LANES], obstacle: Obstacle) {
         let point @ [x, y] = obstacle.position;
         let bare = &situation.footprint;
-        let here = libm::hypot(x, y);
+        let here = libm::sqrt(x * x + y * y);
         self.here_m = self.here_m.min(here);
         self.nearest_m = self.nearest_m.min(libm::sqrt(bare.distance_squared(point)));
         self.room_m = self
