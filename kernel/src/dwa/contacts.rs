@@ -10,6 +10,8 @@ use super::types::{Obstacle, Situation, Velocity};
 
 /// Lanes padded to a multiple of what vector units take.
 const PADDED: usize = 64;
+/// So many lanes are skipped at once.
+const GROUP: usize = 8;
 /// Relative slack of every comparison that skips a point; far above rounding.
 const SLACK: f64 = 1e-6;
 /// A corner moves by less than this times the inflation (the root of two).
@@ -119,10 +121,19 @@ impl Contacts {
             return;
         }
         let passes = self.sieve.passes(obstacle, away);
-        for (index, (lane, pass)) in lanes.iter().zip(passes).enumerate() {
-            let straight = matches!(lane.track, Track::Line { .. }) && lane.rates.is_some();
-            if pass || straight {
-                self.touch(situation, (index, lane), obstacle);
+        // Only the first lane is straight, and the sieve does not know it.
+        if let Some(lane) = lanes.first().filter(|lane| lane.is_straight()) {
+            self.touch(situation, (0, lane), obstacle);
+        }
+        for (group, (lanes, passes)) in lanes.chunks(GROUP).zip(passes.chunks(GROUP)).enumerate() {
+            if passes == [0; GROUP] {
+                continue;
+            }
+            let first = group.saturating_mul(GROUP);
+            for (offset, (lane, pass)) in lanes.iter().zip(passes).enumerate() {
+                if *pass != 0 {
+                    self.touch(situation, (first.saturating_add(offset), lane), obstacle);
+                }
             }
         }
     }
@@ -177,16 +188,16 @@ impl Contacts {
 }
 
 impl Sieve {
-    /// Which circular lanes a point may matter to, when it is `away` (squared, m²) from the
+    /// Which circular lanes (1) a point may matter to, when it is `away` (squared, m²) from the
     /// outline inflated for it; branch-free, so that it vectorises.
-    fn passes(&self, obstacle: Obstacle, away: f64) -> [bool; PADDED] {
+    fn passes(&self, obstacle: Obstacle, away: f64) -> [u8; PADDED] {
         let [x, y] = obstacle.position;
         // An edge moves by the inflation, a corner by the root of two of it.
         let (edge, corner) = (
             obstacle.inflation_m + SLACK,
             CORNER_GROWTH * obstacle.inflation_m + SLACK,
         );
-        let mut passes = [false; PADDED];
+        let mut passes = [0; PADDED];
         let columns = self.centre_y.iter().zip(&self.least);
         let columns = columns.zip(self.largest.iter().zip(&self.chord));
         for (pass, ((centre, least), (largest, chord))) in passes.iter_mut().zip(columns) {
@@ -194,9 +205,10 @@ impl Sieve {
             let squared = x * x + across * across;
             let inner = (least - edge).max(0.0);
             let outer = largest + corner;
-            *pass = (squared >= inner * inner * (1.0 - SLACK))
+            let may = (squared >= inner * inner * (1.0 - SLACK))
                 & (squared <= outer * outer * (1.0 + SLACK))
                 & (away <= chord * squared);
+            *pass = u8::from(may);
         }
         passes
     }

@@ -72,6 +72,11 @@ impl Lane {
         }
     }
 
+    /// Whether this is the straight lane, and the window allows it.
+    pub fn is_straight(&self) -> bool {
+        matches!(self.track, Track::Line { .. }) && self.rates.is_some()
+    }
+
     /// The motion of this lane at unit rate.
     pub fn direction(&self) -> Velocity {
         match self.course {

@@ -22,6 +22,7 @@ pub mod footprint;
 mod lanes;
 pub mod margin;
 mod objective;
+mod situation;
 mod survey;
 mod types;
 pub mod window;

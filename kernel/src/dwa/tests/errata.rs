@@ -143,10 +143,8 @@ fn printed_4_10_is_negative_on_one_side_and_nothing_on_the_spot() {
     let Clearance::Contact(angle) = spot else {
         panic!("the front left corner must touch")
     };
-    assert!(
-        (angle - ((0.7_f64.powi(2) - 0.42_f64.powi(2)).sqrt()).atan2(0.42)).abs() > 1e-9
-            || angle > 0.5
-    );
+    // The circle of radius 0.7 meets the left edge 0.56 ahead of the centre.
+    assert!((angle - 0.56_f64.atan2(0.42)).abs() < 1e-9, "{angle}");
     assert!(0.0 / 0.7 * (angle * 0.7) < angle);
     // R = ∞: infinity over infinity.
     assert!((f64::INFINITY / f64::INFINITY).is_nan());

@@ -313,3 +313,60 @@ fn never_drives_backwards() {
         (Outcome::Unsuitable, 0)
     );
 }
+
+#[test]
+fn what_is_in_flight_counts() {
+    let slow = Velocity {
+        linear_mps: 0.3,
+        angular_radps: 0.0,
+    };
+    let fast = [Velocity {
+        linear_mps: 1.1,
+        angular_radps: 0.0,
+    }];
+    let wall: Vec<Point> = (-20..=20).map(|y| [1.6, f64::from(y) * 0.05]).collect();
+    let situation = seekur(slow, [5.0, 0.0]);
+    assert_eq!(plan(&situation, obstacles(&wall)).outcome, Outcome::Moving);
+    let hurried = Situation {
+        in_flight: &fast,
+        ..situation
+    };
+    let plan = plan(&hurried, obstacles(&wall));
+    assert!(
+        matches!(plan.outcome, Outcome::Blocked(Some(_))),
+        "{plan:?}"
+    );
+}
+
+#[test]
+fn candidates_differ_and_the_guards_points_convert() {
+    let plan = plan(
+        &seekur(
+            Velocity {
+                linear_mps: 0.5,
+                angular_radps: 0.0,
+            },
+            [5.0, 1.0],
+        ),
+        [],
+    );
+    assert_eq!(plan.candidates().len(), CANDIDATES);
+    for (index, one) in plan.candidates().iter().enumerate() {
+        let earlier = &plan.candidates()[..index];
+        assert!(
+            earlier.iter().all(|other| other.velocity != one.velocity),
+            "{plan:?}"
+        );
+    }
+    let point = crate::guard::check::CloudPoint {
+        x_mm: 1_500,
+        y_mm: -20,
+        extra_mm: 12,
+        joined: true,
+    };
+    let obstacle = Obstacle {
+        position: [1.5, -0.02],
+        inflation_m: 0.012,
+    };
+    assert_eq!(Obstacle::from(point), obstacle);
+}
