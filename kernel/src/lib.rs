@@ -19,6 +19,7 @@ pub mod checked;
 pub mod config;
 pub mod convert;
 pub mod decision;
+pub mod dwa;
 pub mod geometry;
 pub mod grid;
 pub mod guard;
