@@ -3,9 +3,6 @@
 use haltline::decision::Reason;
 use serde::{Deserialize, Deserializer, de::Error};
 
-/// What the simulator names when a body is invisible to every beam.
-const SIMULATOR_ONLY: &str = "A-VISIBLE";
-
 /// All reasons of the kernel, in its order.
 const REASONS: [Reason; 31] = [
     Reason::None,
@@ -57,10 +54,7 @@ where
     D: Deserializer<'de>,
 {
     let all = haltline_spec::requirements::assumptions();
-    let mut known: Vec<_> = all.into_iter().map(|found| found.id.to_owned()).collect();
-    if !known.iter().any(|id| id == SIMULATOR_ONLY) {
-        known.push(SIMULATOR_ONLY.to_owned());
-    }
+    let known: Vec<_> = all.into_iter().map(|found| found.id.to_owned()).collect();
     checked(deserializer, "assumption", &known)
 }
 
