@@ -1,5 +1,7 @@
 //! Pass or fail, in sentences.
 
+mod navigation;
+
 use crate::file::{ContactExpectation, Expect, Scenario};
 use crate::result::{CaseResult, Contact, GroupResult, Judgement, Outcome, RunResult};
 
@@ -42,6 +44,7 @@ pub fn judge(scenario: &Scenario, guarded: &RunResult, naked: Option<&RunResult>
     assumptions(&mut sentences, &scenario.expect, guarded);
     course(&mut sentences, &scenario.expect, guarded);
     stops(&mut sentences, scenario, guarded);
+    navigation::judge(&mut sentences, &scenario.expect, guarded);
     if let Some(naked) = naked {
         twin(&mut sentences, scenario, naked);
     }
@@ -149,6 +152,24 @@ fn course(sentences: &mut Sentences, expect: &Expect, run: &RunResult) {
                 "Turned {:.2} rad, expected at least {:.2} rad.",
                 run.turned_rad,
                 least.get()
+            )
+        });
+    }
+    if let Some(most) = expect.turned_max_deg {
+        let turned = run.turned_rad.to_degrees();
+        sentences.demand(turned <= most.get(), || {
+            format!(
+                "Turned {turned:.0} deg in all, expected at most {:.0} deg.",
+                most.get()
+            )
+        });
+    }
+    if let Some(most) = expect.travelled_max_m {
+        sentences.demand(run.travelled_m <= most.get(), || {
+            format!(
+                "Travelled {:.2} m, expected at most {:.2} m.",
+                run.travelled_m,
+                most.get()
             )
         });
     }

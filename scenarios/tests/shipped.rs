@@ -53,7 +53,7 @@ fn crossing_has_both_sides_at_twenty_timings() {
     for side in [left, right] {
         let delays: Vec<f64> = side
             .iter()
-            .filter_map(|s| s.circle[0].motion.as_ref()?.get_ref().delay_s)
+            .filter_map(|s| s.circle[0].get_ref().motion.as_ref()?.get_ref().delay_s)
             .map(|delay| delay.get())
             .collect();
         // Robot and object meet for 1.6667 s; the sweep is -1.5 s to +1.5 s around it.

@@ -87,7 +87,7 @@ pub fn run(scenario: &Scenario, robot: &Robot, controller: Option<Box<dyn Contro
         for touch in touches {
             host.touch(touch, &engine.broken);
         }
-        let reached = engine.reached();
+        let reached = engine.reached(t_us);
         if reached || t_us >= end_us {
             return finish(recorder, host, &engine, t_us, reached);
         }
@@ -168,8 +168,10 @@ impl<'a> Engine<'a> {
             .is_some_and(|since| t_us - since >= microseconds(span_s))
     }
 
-    fn reached(&self) -> bool {
-        self.goal.is_some_and(|goal| goal.holds(&self.pose()))
+    fn reached(&self, t_us: u64) -> bool {
+        let rested = || self.rested(t_us, self.robot.values.timing.rest_s);
+        self.goal
+            .is_some_and(|goal| goal.holds(&self.pose()) && (!goal.at_rest || rested()))
     }
 
     fn distances(&self, t_us: u64) -> Vec<f64> {

@@ -204,6 +204,7 @@ fn empty(guarded: bool) -> RunResult {
         world: WorldRecord::default(),
         remembered_m: Vec::new(),
         monitors: Vec::new(),
+        navigation: None,
         assumptions_broken: Vec::new(),
     }
 }

@@ -67,6 +67,15 @@ where
     checked(deserializer, "reason", &known)
 }
 
+/// Why the kernel's navigator cannot go on, as the kernel names it.
+pub(super) fn blocked_reason<'de, D>(deserializer: D) -> Result<Option<String>, D::Error>
+where
+    D: Deserializer<'de>,
+{
+    let name = String::deserialize(deserializer)?;
+    Ok(Some(name))
+}
+
 fn checked<'de, D>(deserializer: D, what: &str, known: &[String]) -> Result<Vec<String>, D::Error>
 where
     D: Deserializer<'de>,
