@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::controller::{Controller, RobotKernel};
 use crate::engine::{Run, run};
 pub use crate::equip::{Case, equip};
+use crate::pilot::Pilot;
 use crate::result::{CaseResult, FootprintRecord, Outcome, SuiteResult};
 use crate::verdict::{judge, judge_group};
 
@@ -38,10 +39,10 @@ pub struct CaseRun {
 /// Runs one case with the guard, or without; none if the kernel refuses the robot.
 #[must_use]
 pub fn run_one(case: &Case, guard_on: bool) -> Option<Run> {
-    let controller: Option<Box<dyn Controller>> = if guard_on {
-        Some(Box::new(RobotKernel::new(case.robot.config).ok()?))
-    } else {
-        None
+    let controller: Option<Box<dyn Controller>> = match (guard_on, case.scenario.navigates()) {
+        (false, _) => None,
+        (true, false) => Some(Box::new(RobotKernel::new(case.robot.config).ok()?)),
+        (true, true) => Some(Box::new(Pilot::new(&case.scenario, &case.robot).ok()?)),
     };
     Some(run(&case.scenario, &case.robot, controller))
 }

@@ -8,6 +8,7 @@ use crate::controller::RobotKernel;
 use crate::engine::STEP_US;
 use crate::file::{Scenario, ScenarioError};
 use crate::math::Pose;
+use crate::pilot::{Pilot, PilotError};
 use crate::populate::populate;
 
 /// A scenario with its robot, ready to run.
@@ -65,11 +66,30 @@ pub fn equip(scenario: Scenario, robot: &Robot) -> Result<Case, ScenarioError> {
     }
     RobotKernel::new(equipped.config)
         .map_err(|error| wrong("", format!("the kernel refuses {}: {error:?}", robot.name)))?;
+    if scenario.navigates() {
+        Pilot::new(&scenario, &equipped).map_err(|error| wrong("proposer", refused(&error)))?;
+    }
     Ok(Case {
         scenario,
         robot: equipped,
         changes,
     })
+}
+
+/// A route or planning that the kernel cannot take, in words.
+fn refused(error: &PilotError) -> String {
+    match error {
+        PilotError::Route => {
+            "the kernel cannot hold a place or tolerance of the route; write metres \
+                              within 2000 of the start"
+                .to_owned()
+        }
+        PilotError::Navigator(error) => {
+            format!(
+                "the kernel refuses to navigate like this: {error:?}; write other values into [proposer.navigate]"
+            )
+        }
+    }
 }
 
 /// The table `[robot_values]` as changes; nested tables spell dotted keys.

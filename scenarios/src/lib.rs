@@ -19,6 +19,7 @@ pub mod monitor;
 pub mod navigation;
 pub mod noise;
 pub mod odometry;
+pub mod pilot;
 pub mod populate;
 pub mod proposer;
 pub mod raycast;

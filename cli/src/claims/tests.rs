@@ -21,6 +21,7 @@ fn run(monitors: Vec<MonitorReport>) -> RunResult {
         world: WorldRecord::default(),
         remembered_m: Vec::new(),
         monitors,
+        navigation: None,
         assumptions_broken: Vec::new(),
     }
 }
@@ -49,6 +50,7 @@ fn suite(guarded: RunResult, naked: Option<RunResult>) -> SuiteResult {
             title: "Poles".into(),
             requirements: vec![],
             robot: "seekur_jr".into(),
+            robot_values: Vec::new(),
             seed: 1,
             obstacle_speed_mps: 0.0,
             footprint: FootprintRecord::default(),

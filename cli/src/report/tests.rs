@@ -143,6 +143,7 @@ fn run(guarded: bool, stop_at: f64) -> RunResult {
                 violations: vec![],
             })
             .collect(),
+        navigation: None,
         assumptions_broken: vec![BrokenAssumption {
             id: "A-OBSTACLE".into(),
             what: "a ball at 3 m/s".into(),
@@ -157,6 +158,7 @@ fn case(name: &str, group: &str, stop_at: f64) -> CaseResult {
         title: "A ball crosses the corridor & hides".into(),
         requirements: vec!["ZONE-01".into()],
         robot: "seekur_jr".into(),
+        robot_values: Vec::new(),
         seed: 7,
         obstacle_speed_mps: 1.0,
         footprint: FootprintRecord {

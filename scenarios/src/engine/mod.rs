@@ -1,6 +1,7 @@
 //! The deterministic engine: 10 ms dynamics, control ticks at the robot's period.
 
 mod host;
+mod operator;
 mod recorder;
 
 #[cfg(test)]
@@ -103,10 +104,8 @@ fn finish(
     t_us: u64,
     reached: bool,
 ) -> Run {
-    let (monitors, remembered_m) = host.finish(engine);
     let (mut result, trace) = recorder.finish(engine, seconds(t_us), reached);
-    result.monitors = monitors;
-    result.remembered_m = remembered_m;
+    host.finish(engine, &mut result);
     Run { result, trace }
 }
 

@@ -38,4 +38,8 @@ pub struct Navigate {
     pub turn_first_deg: Option<NonNegative>,
     /// Bearing of the goal below which turning on the spot is not worth it.
     pub aligned_deg: Option<NonNegative>,
+    /// Moving for so long without coming nearer ends the route.
+    pub give_up_s: Option<Positive>,
+    /// Coming nearer by less than this does not count.
+    pub nearer_m: Option<NonNegative>,
 }

@@ -61,6 +61,7 @@ fn inputs(now_us: u64) -> TickInputs {
             stamp_us: now_us,
             motion: SetPoint::Twist { v: 0.5, omega: 0.0 },
         }),
+        order_us: None,
         emergency_stop: false,
         reset_us: None,
     }
@@ -289,4 +290,37 @@ fn input_fires_when_the_unusable_is_passed_over() {
         bench.tick(decision(Action::Pass, 0.01), spoil);
         assert_eq!(bench.fired()[0..], ["INPUT"]);
     }
+}
+
+#[test]
+fn latch_fires_on_an_order_from_before_the_release() {
+    let robot = robot();
+    let drive = |order_us: u64| {
+        let mut bench = Bench::running(&robot);
+        bench.tick(decision(Action::Pass, 0.01), move |inputs| {
+            (inputs.command, inputs.order_us) = (None, Some(order_us));
+        });
+        bench.fired()
+    };
+    let released = Bench::running(&robot).now_us;
+    assert_eq!(
+        drive(1_000_000),
+        ["LATCH"],
+        "the order is older than the release"
+    );
+    assert!(drive(released).is_empty());
+}
+
+#[test]
+fn order_that_is_no_longer_handed_in_goes_stale() {
+    let robot = robot();
+    let mut bench = Bench::running(&robot);
+    let order = bench.now_us;
+    for tick in 0..8 {
+        bench.tick(decision(Action::Pass, 0.01), move |inputs| {
+            (inputs.command, inputs.order_us) = (None, (tick < 2).then_some(order));
+        });
+    }
+    // 200 ms after the last tick that handed it in.
+    assert!(bench.fired().contains(&"FRESH".to_owned()));
 }
