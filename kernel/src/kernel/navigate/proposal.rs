@@ -208,6 +208,7 @@ fn margin<const S: usize>(config: &KernelConfig<S>) -> Margin {
         speed_tolerance_mps: f64::from(plain.tolerances.speed.as_um_per_s()) * MICRO,
         turn_tolerance_radps: f64::from(plain.tolerances.angular_speed.as_urad_per_s()) * MICRO,
         obstacle_speed_mps: f64::from(plain.obstacle_speed.as_um_per_s()) * MICRO,
+        separate_ramps: config.tube().dynamics.separate_ramps,
     }
 }
 
