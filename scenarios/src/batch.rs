@@ -59,6 +59,13 @@ pub fn run_case(case: &Case) -> Option<CaseRun> {
     Some(assemble(case, guarded, naked, excuse))
 }
 
+/// Runs a case with the guard only and judges that; none if the kernel refuses the robot.
+#[must_use]
+pub fn run_guarded(case: &Case) -> Option<CaseRun> {
+    let guarded = run_one(case, true)?;
+    Some(assemble(case, guarded, None, Some("not run")))
+}
+
 fn assemble(case: &Case, guarded: Run, naked: Option<Run>, excuse: Option<&str>) -> CaseRun {
     let scenario = &case.scenario;
     let outline = &case.robot.values.footprint;

@@ -64,16 +64,31 @@ pub fn equip(scenario: Scenario, robot: &Robot) -> Result<Case, ScenarioError> {
         );
         return Err(wrong("robot_values.timing.period_s", message));
     }
-    RobotKernel::new(equipped.config)
-        .map_err(|error| wrong("", format!("the kernel refuses {}: {error:?}", robot.name)))?;
-    if scenario.navigates() {
-        Pilot::new(&scenario, &equipped).map_err(|error| wrong("proposer", refused(&error)))?;
-    }
+    check_kernel(&scenario, &equipped)?;
     Ok(Case {
         scenario,
         robot: equipped,
         changes,
     })
+}
+
+/// Whether the kernel takes robot and route. Both pass over the stack, hence a frame of their own.
+#[inline(never)]
+fn check_kernel(scenario: &Scenario, robot: &Robot) -> Result<(), ScenarioError> {
+    let places = &scenario.places;
+    if scenario.navigates() {
+        return match Pilot::new(scenario, robot) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(places.complain("proposer", refused(&error))),
+        };
+    }
+    match RobotKernel::new(robot.config) {
+        Ok(_) => Ok(()),
+        Err(error) => {
+            let message = format!("the kernel refuses {}: {error:?}", robot.name);
+            Err(places.complain("", message))
+        }
+    }
 }
 
 /// A route or planning that the kernel cannot take, in words.

@@ -6,6 +6,7 @@
 //! the kernel's geometry: the kernel is only ever called through its public door.
 
 pub mod assumption;
+pub mod barn;
 pub mod batch;
 pub mod contact;
 pub mod controller;

@@ -57,8 +57,6 @@ impl Pilot {
     /// No goal, numbers that the kernel cannot hold, or a planning it refuses.
     pub fn new(scenario: &Scenario, robot: &Robot) -> Result<Self, PilotError> {
         let navigate = scenario.proposer.get_ref().navigate.unwrap_or_default();
-        let navigator = RobotNavigator::new(robot.config, planning(&navigate)?)
-            .map_err(PilotError::Navigator)?;
         let tolerance_m = navigate
             .via_tolerance_m
             .map_or(VIA_TOLERANCE_M, |v| v.get());
@@ -74,13 +72,33 @@ impl Pilot {
         let points = scenario.via_m();
         let via: Option<Vec<Via>> = points.into_iter().map(via).collect();
         Ok(Self {
-            navigator: Box::new(navigator),
+            navigator: boxed(robot, planning(&navigate)?)?,
             via: via.ok_or(PilotError::Route)?,
             goal: destination(scenario, &navigate, &frame).ok_or(PilotError::Route)?,
             ordered: None,
             said: None,
         })
     }
+}
+
+/// Stack on which a navigator is put together: some copies of it, which unoptimised builds make.
+const BUILDER_STACK: usize = 16 << 20;
+
+/// A navigator on the heap. It is put together on the stack first, so on a thread that has enough.
+fn boxed(robot: &Robot, planning: Planning) -> Result<Box<RobotNavigator>, PilotError> {
+    let config = robot.config;
+    let make = move || RobotNavigator::new(config, planning).map(Box::new);
+    let built = match std::thread::Builder::new()
+        .stack_size(BUILDER_STACK)
+        .spawn(make)
+    {
+        Ok(builder) => builder
+            .join()
+            .unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+        // No thread to be had: this one may do.
+        Err(_) => make(),
+    };
+    built.map_err(PilotError::Navigator)
 }
 
 /// The odometry starts at zero where the robot starts.
