@@ -29,6 +29,16 @@ impl Change {
         }
     }
 
+    /// Whether the value is another one than that of the file, and not only written otherwise.
+    #[must_use]
+    pub fn differs(&self) -> bool {
+        let number = |text: &str| text.parse::<f64>().ok();
+        match (number(&self.value), number(&self.before)) {
+            (Some(value), Some(before)) => value.total_cmp(&before).is_ne(),
+            _ => self.value != self.before,
+        }
+    }
+
     /// The path as the reader of robot files writes it: `scanner[0].error_sigma_m`.
     fn path(&self) -> String {
         let mut path = String::new();

@@ -65,6 +65,7 @@ pub fn equip(scenario: Scenario, robot: &Robot) -> Result<Case, ScenarioError> {
         return Err(wrong("robot_values.timing.period_s", message));
     }
     check_kernel(&scenario, &equipped)?;
+    changes.retain(Change::differs);
     Ok(Case {
         scenario,
         robot: equipped,

@@ -161,6 +161,12 @@ fn facts(page: &mut String, case: &CaseResult) {
     if let Some(gap_m) = run.min_clearance_moving_m {
         facts.push(("nearest while moving", words::metres(gap_m)));
     }
+    if let Some(navigation) = &run.navigation {
+        facts.push(("drives itself", words::navigated(navigation)));
+    }
+    if let Some(values) = words::robot_values(&case.robot_values) {
+        facts.push(("not the shipped robot", values));
+    }
     let bumps = run.contacts.len() - run.moving_contacts();
     if bumps > 0 {
         facts.push(("bodies that ran into the resting robot", bumps.to_string()));

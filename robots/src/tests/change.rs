@@ -22,6 +22,10 @@ fn values_replace_those_of_the_file() {
     assert_eq!(robot.values.tolerances.tracking_m, 0.005);
     assert_eq!(changes[0].before, "0.030");
     assert_eq!(changes[2].before, "0.020");
+    assert!(changes[0].differs());
+    let mut same = Change::new("tolerances.tracking_m", "0.02");
+    same.before = "0.020".to_owned();
+    assert!(!same.differs());
     // The kernel's integers follow.
     assert_ne!(robot.config, Robot::embedded("seekur_jr").unwrap().config);
 }
