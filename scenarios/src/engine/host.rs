@@ -142,11 +142,12 @@ impl<'a> Host<'a> {
             return self.sent;
         };
         let decision = tick(controller.as_mut(), self.robot, inputs, now_us);
-        let record = record(&decision);
+        let mut record = record(&decision);
         let pose = engine.pose();
         if let (Some(log), Some(said)) =
             (&mut self.navigation, controller.said(&pose, self.base_us))
         {
+            record.wants_rest = said.progress.kind == "arrived";
             log.note(seconds(t_us), &pose, said);
         }
         if decision.status == StopStatus::Running && self.released_us.is_none() {
@@ -266,6 +267,7 @@ fn record(decision: &Decision) -> DecisionRecord {
         status: decision.status,
         set_point: set_point(decision.setpoint),
         expires_us: decision.expires.as_us(),
+        wants_rest: false,
         point_m: point.map(|p| [f64::from(p.x_mm) * 1e-3, f64::from(p.y_mm) * 1e-3]),
     }
 }

@@ -39,6 +39,7 @@ fn decision(action: Action, v: f64) -> DecisionRecord {
         set_point: SetPoint::Twist { v, omega: 0.0 },
         expires_us: 0,
         point_m: None,
+        wants_rest: false,
     }
 }
 
@@ -309,6 +310,25 @@ fn latch_fires_on_an_order_from_before_the_release() {
         "the order is older than the release"
     );
     assert!(drive(released).is_empty());
+}
+
+#[test]
+fn limit_leaves_braking_at_the_destination_to_the_brakes() {
+    let robot = robot();
+    let stops = |wants_rest: bool| {
+        let mut bench = Bench::running(&robot);
+        let order = bench.now_us;
+        for v in [0.01, 0.02, 0.03, 0.04, 0.05, 0.0] {
+            let mut decision = decision(Action::Pass, v);
+            decision.wants_rest = wants_rest && v == 0.0;
+            bench.tick(decision, move |inputs| {
+                (inputs.command, inputs.order_us) = (None, Some(order));
+            });
+        }
+        bench.fired()
+    };
+    assert_eq!(stops(false), ["LIMIT"]);
+    assert!(stops(true).is_empty());
 }
 
 #[test]
