@@ -60,6 +60,30 @@ pub struct NavigationRecord {
     pub refusals: Vec<RefusalRecord>,
 }
 
+/// What a certificate keeps of the account.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NavigationBrief {
+    /// Progress at the end.
+    pub end: ProgressRecord,
+    /// Via points of the route.
+    pub via_points: usize,
+    /// Candidates of the planner that the guard refused.
+    pub refused: u64,
+    /// Ticks in which it refused one.
+    pub refused_ticks: u64,
+}
+
+impl From<&NavigationRecord> for NavigationBrief {
+    fn from(record: &NavigationRecord) -> Self {
+        Self {
+            end: record.end.clone(),
+            via_points: record.via_points,
+            refused: record.refused,
+            refused_ticks: record.refused_ticks,
+        }
+    }
+}
+
 /// Refusals kept in full; the rest is only counted.
 const KEPT: usize = 20;
 

@@ -145,6 +145,8 @@ pub struct WorldRecord {
     pub goal_m: Option<[f64; 2]>,
     /// Goal radius.
     pub goal_radius_m: Option<f64>,
+    /// Points to pass on the way.
+    pub via_m: Vec<[f64; 2]>,
 }
 
 /// A tick at which a monitored requirement did not hold.

@@ -22,9 +22,19 @@ pub fn write(page: &mut String, certificate: &Certificate, suite: &SuiteResult) 
     let single: Vec<&CaseResult> = suite.cases.iter().filter(|case| !in_sweep(case)).collect();
     let (breaking, keeping): (Vec<&CaseResult>, Vec<&CaseResult>) =
         single.into_iter().partition(|case| breaks(case));
-    cards(page, &keeping, certificate);
+    let (other, own): (Vec<&CaseResult>, Vec<&CaseResult>) = keeping
+        .into_iter()
+        .partition(|case| !case.robot_values.is_empty());
+    cards(page, &own, certificate);
     for group in &suite.groups {
         sweeps::write(page, group, suite, certificate);
+    }
+    if !other.is_empty() {
+        page.push_str(
+            "<h2>Runs with other values of the robot</h2><p class=\"soft\">Each card says which. They are \
+             evidence for no claim about this robot; what a monitor objects to in them counts all the same.</p>",
+        );
+        cards(page, &other, certificate);
     }
     if !breaking.is_empty() {
         page.push_str(

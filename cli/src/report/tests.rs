@@ -59,6 +59,7 @@ fn world() -> WorldRecord {
         ],
         goal_m: Some([7.0, 0.3]),
         goal_radius_m: Some(0.25),
+        via_m: vec![[5.0, 0.2]],
     }
 }
 

@@ -56,6 +56,7 @@ struct Engine<'a> {
     odometer: Odometer,
     drive: Drive,
     goal: Option<GoalDisc>,
+    via_m: Vec<[f64; 2]>,
     transit: Transit,
     /// True pose at every dynamics step so far.
     history: Vec<Pose>,
@@ -124,6 +125,7 @@ impl<'a> Engine<'a> {
                 [start.linear_mps.get(), start.angular_radps.get()],
             ),
             goal: GoalDisc::of(scenario),
+            via_m: scenario.via_m(),
             transit: Transit::default(),
             history: vec![Pose::new(
                 start.x_m.get(),

@@ -182,6 +182,7 @@ impl Recorder {
             bodies: engine.world.record(time_s, BODY_STEP_S),
             goal_m: engine.goal.map(|goal| goal.centre),
             goal_radius_m: engine.goal.map(|goal| goal.radius),
+            via_m: engine.via_m.clone(),
         };
         (self.result, self.trace)
     }
