@@ -163,6 +163,7 @@ fn planning(navigate: &Navigate) -> Result<Planning, PilotError> {
         object_near_m: or(navigate.object_near_m.map(plain), preset.object_near_m),
         comfort: or(navigate.comfort.map(|v| v.get()), preset.comfort),
         creep_mps: or(navigate.creep_mps.map(plain), preset.creep_mps),
+        start_m: or(navigate.start_m.map(plain), preset.start_m),
         turn_first_rad: angle(navigate.turn_first_deg.map(plain), preset.turn_first_rad),
         aligned_rad: angle(navigate.aligned_deg.map(plain), preset.aligned_rad),
     };

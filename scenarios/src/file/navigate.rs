@@ -34,6 +34,8 @@ pub struct Navigate {
     pub comfort: Option<Fraction>,
     /// Speed below which driving is not worth it.
     pub creep_mps: Option<NonNegative>,
+    /// Free way beyond its stop that makes it worth to leave rest.
+    pub start_m: Option<NonNegative>,
     /// Bearing of the goal beyond which the robot stops and turns on the spot.
     pub turn_first_deg: Option<NonNegative>,
     /// Bearing of the goal below which turning on the spot is not worth it.
