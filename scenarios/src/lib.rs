@@ -13,6 +13,7 @@ pub mod drive;
 pub mod engine;
 pub mod faults;
 pub mod file;
+pub mod marker_world;
 pub mod math;
 pub mod monitor;
 pub mod noise;
