@@ -1,6 +1,7 @@
 //! The thesis' marker experiments: `cargo run --release -p haltline-pilots --example markers`.
 //!
-//! Prints a table for the kernel's EKF, the dense EKF, the UKF and the mixture.
+//! Prints a table for the kernel's EKF, the dense EKF, the UKF and the mixture. Parts can be named:
+//! `corridor`, `consistency`, `field`, `loop`; without a name all run, about five minutes.
 #![allow(clippy::unwrap_used)]
 
 use haltline::marker::{MarkerEkf, MarkerFilter, Pose2};
@@ -193,52 +194,57 @@ fn long_loop() {
     }
 }
 
-fn main() {
+fn corridors() {
+    let (ideal, real) = (world::idealised(), world::realistic());
     corridor(
         "6.1.2 static map, idealised",
-        &world::corridor_setup(world::idealised()),
+        &world::corridor_setup(ideal),
         true,
     );
     corridor(
         "6.1.1 dynamic markers, idealised",
-        &world::corridor_setup(world::idealised()),
+        &world::corridor_setup(ideal),
         false,
     );
     corridor(
         "6.1.2 static map, realistic",
-        &world::corridor_setup(world::realistic()),
+        &world::corridor_setup(real),
         true,
     );
     corridor(
         "6.1.1 dynamic markers, realistic",
-        &world::corridor_setup(world::realistic()),
+        &world::corridor_setup(real),
         false,
     );
+}
+
+fn consistencies() {
     let spread = [0.01, 0.01, 0.0025];
+    let (straight, round) = (
+        world::corridor_setup(world::realistic()),
+        world::roomy_setup(world::realistic()),
+    );
+    consistency("corridor, dynamic", &straight, false, spread);
+    consistency("corridor, static", &straight, true, spread);
+    consistency("circles, dynamic, known start", &round, false, KNOWN_START);
     consistency(
-        "corridor, dynamic, realistic",
-        &world::corridor_setup(world::realistic()),
+        "circles, dynamic, start heading within 3 deg",
+        &round,
         false,
         spread,
     );
-    consistency(
-        "circles, dynamic, realistic",
-        &world::roomy_setup(world::realistic()),
-        false,
-        spread,
-    );
-    consistency(
-        "corridor, static, realistic",
-        &world::corridor_setup(world::realistic()),
-        true,
-        spread,
-    );
-    consistency(
-        "circles, dynamic, known start",
-        &world::roomy_setup(world::realistic()),
-        false,
-        KNOWN_START,
-    );
-    field();
-    long_loop();
+}
+
+fn main() {
+    let parts: Vec<String> = std::env::args().skip(1).collect();
+    for (name, part) in [
+        ("corridor", corridors as fn()),
+        ("consistency", consistencies),
+        ("field", field),
+        ("loop", long_loop),
+    ] {
+        if parts.is_empty() || parts.iter().any(|wanted| wanted == name) {
+            part();
+        }
+    }
 }

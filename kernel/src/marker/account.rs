@@ -3,8 +3,9 @@
 use super::POSITION_MAX_M;
 use super::correct::Moved;
 use super::ekf::{Learned, MarkerEkf};
-use super::linear::{sandwich, sum};
+use super::linear::{IDENTITY, sandwich, sum};
 use super::model;
+use super::recovery::{Claim, Takeover};
 use super::sighting::{FrameReport, Sighting, Verdict};
 use crate::time::{Duration, Instant};
 
@@ -86,15 +87,28 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
         let covariance = spread.map_or(noise, |spread| {
             sum(&noise, &sandwich(&jacobians.marker, &spread))
         });
-        let gate = self.rules.gate_pose;
-        let taken =
-            pose.is_within(POSITION_MAX_M) && self.recovery.challenge(&pose, &covariance, gate);
-        if taken {
-            self.robot = pose;
-            self.covariance.tie_robot(slot, &jacobians.marker, &noise);
-            self.recovery.clear();
+        let claim = Claim {
+            id: sighting.id,
+            mapped: slot.is_none(),
+            pose,
+            covariance,
+        };
+        if !pose.is_within(POSITION_MAX_M) {
+            return false;
         }
-        taken
+        match self.recovery.challenge(&claim, self.rules.gate_pose) {
+            None => return false,
+            Some(Takeover::Mean(pose, covariance)) if pose.is_within(POSITION_MAX_M) => {
+                self.robot = pose;
+                self.covariance.tie_robot(None, &IDENTITY, &covariance);
+            }
+            Some(_) => {
+                self.robot = pose;
+                self.covariance.tie_robot(slot, &jacobians.marker, &noise);
+            }
+        }
+        self.recovery.clear();
+        true
     }
 
     /// Takes markers that nobody knows into the state.

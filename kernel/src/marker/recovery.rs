@@ -1,15 +1,18 @@
 //! When the filter is lost, and from which sightings it finds itself again.
 //!
 //! It refuses to believe a single sighting: a pose is taken over only when several sightings,
-//! carried along by odometry, agree on it.
+//! carried along by odometry, agree on it; and while not yet lost only if they are of more
+//! than one marker, because one that hangs elsewhere now agrees with itself.
 
-use super::linear::{IDENTITY, Ldl, Matrix, Vector, apply, diagonal, difference, sandwich, sum};
+use super::linear::{
+    IDENTITY, Ldl, Matrix, Vector, apply, diagonal, difference, sandwich, subtract, sum,
+};
 use super::model;
 use super::pose::{Increment, Pose2, wrap};
 use crate::time::{Duration, Instant};
 
 /// Sightings that must agree before a pose is taken over.
-pub const SUPPORT: u8 = 4;
+pub const SUPPORT: u8 = 8;
 /// Rejections before a run of them counts; below it there may be single outliers.
 const RUN_MIN: u16 = 5;
 /// A run of rejections ends when none arrives for this long.
@@ -31,6 +34,31 @@ struct Challenger {
     pose: Pose2,
     covariance: Matrix,
     support: u8,
+    /// The first marker that spoke for it, and whether another one does.
+    first: u16,
+    several: bool,
+    /// Whether all that spoke for it are of the map given beforehand.
+    mapped: bool,
+}
+
+/// What a rejected sighting says.
+pub(super) struct Claim {
+    /// The marker.
+    pub(super) id: u16,
+    /// Whether it is of the map given beforehand.
+    pub(super) mapped: bool,
+    /// Where the robot is, if the sighting is right.
+    pub(super) pose: Pose2,
+    /// Its covariance.
+    pub(super) covariance: Matrix,
+}
+
+/// A pose to be taken over.
+pub(super) enum Takeover {
+    /// The mean of all sightings that agree, independent of every marker in the state.
+    Mean(Pose2, Matrix),
+    /// The one that the last sighting claims, with the error of its marker.
+    Last,
 }
 
 /// The run of rejections since the last sighting that fitted.
@@ -85,41 +113,48 @@ impl Recovery {
         self.lost |= self.count >= RUN_MIN && span >= lost_after;
     }
 
-    /// A rejected sighting says the robot is at `pose`; true if that is now to be taken over.
+    /// A rejected sighting speaks for another pose; what is now to be taken over, if anything.
     ///
     /// - `gate`: largest squared Mahalanobis distance of sightings that agree
-    pub(super) fn challenge(&mut self, pose: &Pose2, covariance: &Matrix, gate: f64) -> bool {
-        let fresh = Challenger {
-            pose: *pose,
-            covariance: *covariance,
-            support: 1,
+    pub(super) fn challenge(&mut self, claim: &Claim, gate: f64) -> Option<Takeover> {
+        let challenger = match &mut self.challenger {
+            Some(challenger) if challenger.support > 0 => challenger,
+            other => {
+                *other = Some(Challenger::new(claim));
+                return None;
+            }
         };
-        let challenger = self.challenger.get_or_insert(Challenger {
-            support: 0,
-            ..fresh
-        });
-        if challenger.support == 0 {
-            *challenger = fresh;
-        } else if challenger.agrees(pose, covariance, gate) {
-            challenger.support = challenger.support.saturating_add(1);
-        } else {
+        if !challenger.agrees(claim, gate) {
             // Outliers wear a wrong challenger down, and an outlier never outlives the truth.
             challenger.support = challenger.support.min(SUPPORT).saturating_sub(1);
+            return None;
         }
-        self.lost && challenger.support >= SUPPORT
+        let enough = challenger.support >= SUPPORT && (self.lost || challenger.several);
+        enough.then_some(if challenger.mapped {
+            Takeover::Mean(challenger.pose, challenger.covariance)
+        } else {
+            Takeover::Last
+        })
     }
 }
 
 impl Challenger {
+    const fn new(claim: &Claim) -> Self {
+        Self {
+            pose: claim.pose,
+            covariance: claim.covariance,
+            support: 1,
+            first: claim.id,
+            several: false,
+            mapped: claim.mapped,
+        }
+    }
+
     /// Compares, and if they agree takes the mean weighted by the covariances.
-    fn agrees(&mut self, pose: &Pose2, covariance: &Matrix, gate: f64) -> bool {
-        let [x, y, heading] = pose.as_vector();
-        let apart = [
-            x - self.pose.x_m,
-            y - self.pose.y_m,
-            wrap(heading - self.pose.heading_rad),
-        ];
-        let spread = Ldl::of(&sum(&self.covariance, covariance));
+    fn agrees(&mut self, claim: &Claim, gate: f64) -> bool {
+        let [x, y, heading] = subtract(claim.pose.as_vector(), self.pose.as_vector());
+        let apart = [x, y, wrap(heading)];
+        let spread = Ldl::of(&sum(&self.covariance, &claim.covariance));
         if spread.distance(apart) > gate {
             return false;
         }
@@ -128,8 +163,11 @@ impl Challenger {
         let rest = difference(&IDENTITY, &gain);
         self.covariance = sum(
             &sandwich(&rest, &self.covariance),
-            &sandwich(&gain, covariance),
+            &sandwich(&gain, &claim.covariance),
         );
+        self.support = self.support.saturating_add(1);
+        self.several |= claim.id != self.first;
+        self.mapped &= claim.mapped;
         true
     }
 }

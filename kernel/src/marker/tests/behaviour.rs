@@ -135,34 +135,58 @@ fn rare_outliers_do_not_add_up_to_being_lost() {
     assert_eq!(drive.filter.health(), Health::Tracking);
 }
 
+/// Cycles of driving and looking at these until the pose is taken over.
+fn cycles_until_relocated(drive: &mut Drive<Small>, markers: &[(u16, Pose2)]) -> Option<usize> {
+    (1..60).find(|_| {
+        drive.step(Increment::arc(0.01, 0.0));
+        let seen: vec::Vec<Sighting> = markers
+            .iter()
+            .map(|(id, at)| drive.sees(*id, *at))
+            .collect();
+        drive.show(&seen).relocated
+    })
+}
+
 //= spec/ekf.md#ekf-10
 //= type=test
-//# A lost filter MUST take a pose over only when several rejected sightings, carried along by odometry, agree on it.
+//# The filter MUST take another pose over only when at least eight rejected sightings, carried along by odometry, agree on it, and these are of more than one marker or the filter is lost.
 #[test]
 fn a_slip_is_found_and_mended() {
-    let mut drive = mapped();
-    let seen = [drive.sees(1, LEFT), drive.sees(2, RIGHT)];
-    drive.look(&seen);
-    // The wheels report nothing of this.
-    drive.truth = drive.truth.then(&Pose2::new(0.3, 0.4, 10_f64.to_radians()));
-    let mut cycles = 0;
-    loop {
-        drive.step(Increment::arc(0.01, 0.0));
+    for (markers, cycles) in [
+        // Two markers: the eighth sighting, in the fourth frame.
+        (&[(1, LEFT), (2, RIGHT)][..], 4),
+        // One marker: only once lost, after a second.
+        (&[(1, LEFT)], 21),
+    ] {
+        let mut drive = mapped();
         let seen = [drive.sees(1, LEFT), drive.sees(2, RIGHT)];
-        cycles += 1;
-        if drive.show(&seen).relocated {
-            break;
-        }
-        assert!(cycles < 30);
+        drive.look(&seen);
+        // The wheels report nothing of this.
+        drive.truth = drive.truth.then(&Pose2::new(0.3, 0.4, 10_f64.to_radians()));
+        assert_eq!(cycles_until_relocated(&mut drive, markers), Some(cycles));
+        assert!(drive.filter.pose().distance_m(&drive.truth) < 1e-6);
+        assert_eq!(drive.filter.health(), Health::Tracking);
+        let (sigma, noise) = (drive.filter.pose_covariance()[0][0], noise().xx_m2);
+        assert!(
+            sigma > noise / 30.0,
+            "no better than so many sightings: {sigma}"
+        );
     }
-    assert!((20..=22).contains(&cycles), "{cycles}");
-    assert!(drive.filter.pose().distance_m(&drive.truth) < 1e-6);
-    assert_eq!(drive.filter.health(), Health::Tracking);
-    let covariance = drive.filter.pose_covariance();
-    assert!(
-        covariance[0][0] > 1e-5,
-        "as uncertain as a sighting: {covariance:?}"
-    );
+}
+
+#[test]
+fn sightings_that_disagree_are_never_taken_over() {
+    let mut drive = mapped();
+    for tick in 0..100 {
+        let away = f64::from(tick % 7) * 0.3 + 0.8;
+        let seen = [
+            drive.sees(1, shifted(LEFT, away, 0.0)),
+            drive.sees(2, shifted(RIGHT, -away, 0.0)),
+        ];
+        assert!(!drive.look(&seen).relocated, "tick {tick}");
+    }
+    assert!(matches!(drive.filter.health(), Health::Lost(_)));
+    assert!(drive.filter.pose().distance_m(&drive.truth) < 1e-9);
 }
 
 #[test]
