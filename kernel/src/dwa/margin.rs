@@ -128,18 +128,22 @@ impl<'a> Hull<'a> {
         if situation.margin.separate_ramps && situation.limits.curvature_max_per_m.is_none() {
             let span = |rate: fn(Velocity) -> f64| {
                 let start = rate(velocity);
-                hull.motions().map(rate).fold((start, start), |(low, high), one| {
-                    (one.min(low), one.max(high))
-                })
+                hull.motions()
+                    .map(rate)
+                    .fold((start, start), |(low, high), one| {
+                        (one.min(low), one.max(high))
+                    })
             };
             let (slow, fast) = span(|one| one.linear_mps);
             let (right, left) = span(|one| one.angular_radps);
-            hull.corners = Some([(slow, right), (slow, left), (fast, right), (fast, left)].map(
-                |(linear_mps, angular_radps)| Velocity {
-                    linear_mps,
-                    angular_radps,
-                },
-            ));
+            hull.corners = Some(
+                [(slow, right), (slow, left), (fast, right), (fast, left)].map(
+                    |(linear_mps, angular_radps)| Velocity {
+                        linear_mps,
+                        angular_radps,
+                    },
+                ),
+            );
         }
         hull
     }
@@ -230,7 +234,10 @@ impl Margin {
             0.0
         };
         // Separate ramps: what the robot may turn on after v has come to rest.
-        let rate = situation.fastest_turn_radps().max(velocity.angular_radps.abs()) + slip;
+        let rate = situation
+            .fastest_turn_radps()
+            .max(velocity.angular_radps.abs())
+            + slip;
         let after_turn = if self.separate_ramps && limits.curvature_max_per_m.is_none() {
             rate * rate / (2.0 * limits.angular_braking_radps2)
         } else {
@@ -241,7 +248,8 @@ impl Margin {
             + rolling_back
             + (slip * time_s + after_turn) * corner
             + step * (1.0 + bend * corner) / 2.0;
-        let grown = slip * time_s + after_turn + (high - low) * (path / 2.0 + corner) + GUARD_CHORDS;
+        let grown =
+            slip * time_s + after_turn + (high - low) * (path / 2.0 + corner) + GUARD_CHORDS;
         Inflation {
             start_m,
             end_m: start_m + path * grown,

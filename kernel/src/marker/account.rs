@@ -3,9 +3,10 @@
 use super::POSITION_MAX_M;
 use super::correct::Moved;
 use super::ekf::{Learned, MarkerEkf};
-use super::linear::{IDENTITY, sandwich, sum};
+use super::linear::{IDENTITY, Matrix, ZERO, sandwich, sum};
 use super::model;
-use super::recovery::{Claim, Takeover};
+use super::pose::Pose2;
+use super::recovery::{Bearing, Claim, Takeover};
 use super::sighting::{FrameReport, Sighting, Verdict};
 use crate::time::{Duration, Instant};
 
@@ -77,38 +78,71 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
         let Some((marker, slot)) = self.known(sighting.id) else {
             return false;
         };
-        let known = slot.and_then(|slot| self.markers().get(slot));
-        if sighting.heading_rad.is_none() || known.is_some_and(|marker| !marker.oriented) {
-            return false;
+        let oriented = slot
+            .and_then(|slot| self.markers().get(slot))
+            .is_none_or(|m| m.oriented);
+        let spread = slot.map_or(ZERO, |slot| self.covariance.marker_covariance(slot));
+        if sighting.heading_rad.is_none() || !oriented {
+            return self.challenge_by_position(moved, sighting, &marker, &spread);
         }
         let (pose, jacobians) = model::located(&marker, &moved.seen(sighting));
         let noise = sandwich(&jacobians.robot, &moved.noise(sighting));
-        let spread = slot.map(|slot| self.covariance.marker_covariance(slot));
-        let covariance = spread.map_or(noise, |spread| {
-            sum(&noise, &sandwich(&jacobians.marker, &spread))
-        });
         let claim = Claim {
             id: sighting.id,
             mapped: slot.is_none(),
             pose,
-            covariance,
+            covariance: sum(&noise, &sandwich(&jacobians.marker, &spread)),
         };
-        if !pose.is_within(POSITION_MAX_M) {
-            return false;
-        }
-        match self.recovery.challenge(&claim, self.rules.gate_pose) {
+        match self.claim(&claim) {
             None => return false,
-            Some(Takeover::Mean(pose, covariance)) if pose.is_within(POSITION_MAX_M) => {
-                self.robot = pose;
-                self.covariance.tie_robot(None, &IDENTITY, &covariance);
-            }
-            Some(_) => {
+            Some(Takeover::Mean(pose, covariance)) => self.put(pose, &covariance),
+            Some(Takeover::Last) => {
                 self.robot = pose;
                 self.covariance.tie_robot(slot, &jacobians.marker, &noise);
             }
         }
         self.recovery.clear();
         true
+    }
+
+    /// The same for a position-only sighting: it takes two of different markers to say a pose.
+    fn challenge_by_position(
+        &mut self,
+        moved: &Moved<'_>,
+        sighting: &Sighting,
+        marker: &Pose2,
+        spread: &Matrix,
+    ) -> bool {
+        let noise = moved.noise(sighting);
+        let claim = self.recovery.pair(Bearing {
+            id: sighting.id,
+            marker: *marker,
+            seen: moved.seen(sighting),
+            // Half a trace is a mean; the whole one is on the safe side.
+            variance_m2: noise[0][0] + noise[1][1] + spread[0][0] + spread[1][1],
+        });
+        let taken = claim.as_ref().and_then(|claim| self.claim(claim));
+        let Some(Takeover::Mean(pose, covariance)) = taken else {
+            return false;
+        };
+        self.put(pose, &covariance);
+        self.recovery.clear();
+        true
+    }
+
+    fn claim(&mut self, claim: &Claim) -> Option<Takeover> {
+        if !claim.pose.is_within(POSITION_MAX_M) {
+            return None;
+        }
+        self.recovery.challenge(claim, self.rules.gate_pose)
+    }
+
+    /// Places the robot, independent of every marker.
+    fn put(&mut self, pose: Pose2, covariance: &Matrix) {
+        if pose.is_within(POSITION_MAX_M) {
+            self.robot = pose;
+            self.covariance.tie_robot(None, &IDENTITY, covariance);
+        }
     }
 
     /// Takes markers that nobody knows into the state.

@@ -45,12 +45,67 @@ struct Challenger {
 pub(super) struct Claim {
     /// The marker.
     pub(super) id: u16,
-    /// Whether it is of the map given beforehand.
+    /// Whether it is of the map given beforehand. Also of pairs of positions: what they share
+    /// with learned markers is in their covariance but cannot be tied to one of them.
     pub(super) mapped: bool,
     /// Where the robot is, if the sighting is right.
     pub(super) pose: Pose2,
     /// Its covariance.
     pub(super) covariance: Matrix,
+}
+
+/// A rejected position-only sighting, waiting for another marker's to make a pose of both.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bearing {
+    /// The marker.
+    pub(super) id: u16,
+    /// Where it hangs, in the frame of the map.
+    pub(super) marker: Pose2,
+    /// Where it was seen, in the robot frame of now.
+    pub(super) seen: Pose2,
+    /// Variance of both together, per axis, m².
+    pub(super) variance_m2: f64,
+}
+
+/// Two markers nearer to each other than this say too little about the heading, m.
+const BASELINE_MIN_M: f64 = 0.5;
+/// Distances between two markers, known and seen, agree within so many sigmas.
+const BASELINE_SIGMAS: f64 = 3.0;
+
+impl Bearing {
+    /// The robot's pose from two markers, if their distance is as it should be.
+    fn with(&self, other: &Self) -> Option<Claim> {
+        let towards = |a: &Pose2, b: &Pose2| (b.x_m - a.x_m, b.y_m - a.y_m);
+        let (known, seen) = (
+            towards(&self.marker, &other.marker),
+            towards(&self.seen, &other.seen),
+        );
+        let baseline_m = libm::hypot(known.0, known.1);
+        let variance = self.variance_m2 + other.variance_m2;
+        let apart_m = (libm::hypot(seen.0, seen.1) - baseline_m).abs();
+        if self.id == other.id
+            || baseline_m < BASELINE_MIN_M
+            || apart_m > BASELINE_SIGMAS * libm::sqrt(variance)
+        {
+            return None;
+        }
+        let heading_rad = libm::atan2(known.1, known.0) - libm::atan2(seen.1, seen.0);
+        let turned = Pose2::new(0.0, 0.0, heading_rad).then(&other.seen);
+        let (x, y) = (turned.x_m, turned.y_m);
+        let heading_rad2 = variance / (baseline_m * baseline_m);
+        let lever = [[1.0, 0.0, y], [0.0, 1.0, -x], [0.0, 0.0, 1.0]];
+        let own = [other.variance_m2, other.variance_m2, heading_rad2];
+        Some(Claim {
+            id: other.id,
+            mapped: true,
+            pose: Pose2::new(
+                other.marker.x_m - x,
+                other.marker.y_m - y,
+                wrap(heading_rad),
+            ),
+            covariance: sandwich(&lever, &diagonal(own)),
+        })
+    }
 }
 
 /// A pose to be taken over.
@@ -68,6 +123,7 @@ pub(super) struct Recovery {
     last: Option<Instant>,
     count: u16,
     challenger: Option<Challenger>,
+    bearing: Option<Bearing>,
     lost: bool,
 }
 
@@ -89,8 +145,12 @@ impl Recovery {
         *self = Self::default();
     }
 
-    /// The challenger moves as the robot does.
+    /// The challenger moves as the robot does, and what was seen moves the other way.
     pub(super) fn moved(&mut self, increment: &Increment, noise: Vector) {
+        if let Some(bearing) = &mut self.bearing {
+            bearing.seen = increment.as_pose().sees(&bearing.seen);
+            bearing.variance_m2 += noise[0] + noise[1];
+        }
         if let Some(challenger) = &mut self.challenger {
             let spread = model::motion_noise(&challenger.pose, increment);
             let (pose, jacobian) = model::moved(&challenger.pose, increment);
@@ -111,6 +171,12 @@ impl Recovery {
         self.count = self.count.saturating_add(1);
         let span = stamp.since(first).unwrap_or_default();
         self.lost |= self.count >= RUN_MIN && span >= lost_after;
+    }
+
+    /// A rejected position-only sighting; with the one before it, it may say where the robot is.
+    pub(super) fn pair(&mut self, bearing: Bearing) -> Option<Claim> {
+        let before = self.bearing.replace(bearing)?;
+        before.with(&bearing)
     }
 
     /// A rejected sighting speaks for another pose; what is now to be taken over, if anything.

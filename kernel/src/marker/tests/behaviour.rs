@@ -175,6 +175,24 @@ fn a_slip_is_found_and_mended() {
 }
 
 #[test]
+fn a_slip_is_mended_from_positions_of_two_markers() {
+    let mut drive = mapped();
+    drive.truth = drive.truth.then(&Pose2::new(0.3, 0.4, 10_f64.to_radians()));
+    let relocated = (0..60).any(|tick| {
+        drive.step(Increment::arc(0.01, 0.02));
+        // Never both in one image.
+        let (id, at) = if tick % 2 == 0 { (1, LEFT) } else { (2, RIGHT) };
+        let whole = drive.sees(id, at);
+        let only = Sighting::position(id, whole.x_m, whole.y_m, noise());
+        drive.show(&[only]).relocated
+    });
+    assert!(relocated);
+    assert!(drive.filter.pose().distance_m(&drive.truth) < 1e-6);
+    let turn = drive.filter.pose().heading_rad - drive.truth.heading_rad;
+    assert!(turn.abs() < 1e-6, "{turn}");
+}
+
+#[test]
 fn sightings_that_disagree_are_never_taken_over() {
     let mut drive = mapped();
     for tick in 0..100 {
