@@ -61,7 +61,8 @@ motion. The recorded robot does not obey it, so every verdict is about one momen
 different history.
 
 Example:
-  haltline replay --format sena ../shared/data/sena/sena.csv.gz --out out/sena")]
+  haltline replay --format sena ../shared/data/sena/sena.csv.gz --out out/sena
+  haltline replay --format mrclam MRCLAM_Dataset1 --robot 3")]
     Replay(ReplayArgs),
     /// Print a requirement: its text, its assumptions, its evidence.
     #[command(
@@ -117,10 +118,11 @@ pub struct ReplayArgs {
     /// Format of the log.
     #[arg(long, value_enum)]
     pub format: LogFormat,
-    /// Log file, plain or gzip.
+    /// Log file, plain or gzip; for mrclam the data set's folder.
     pub file: PathBuf,
-    /// Robot file [default: the SENA robot that comes with the program].
-    #[arg(long, value_name = "FILE")]
+    /// Robot file [default: the SENA robot that comes with the program]; for mrclam the robot's
+    /// number [default: 1].
+    #[arg(long, value_name = "FILE|N")]
     pub robot: Option<PathBuf>,
     /// Folder to write the pictures to.
     #[arg(long, value_name = "DIR", default_value = "out/replay")]
@@ -132,6 +134,8 @@ pub struct ReplayArgs {
 pub enum LogFormat {
     /// CSV: time, odometry increment and ranges in each line.
     Sena,
+    /// A folder of the UTIAS multi-robot data sets: the marker filter against known truth.
+    Mrclam,
 }
 
 /// Arguments of `explain`.

@@ -19,6 +19,7 @@ mod explain;
 mod failure;
 mod junit;
 mod library;
+mod mrclam;
 mod new;
 mod picture;
 mod provenance;

@@ -10,7 +10,7 @@ use crate::args::{LogFormat, ReplayArgs};
 use crate::failure::{Exit, Failure, prepare, write_file};
 use crate::picture::{Picture, png, svg};
 use crate::report::words;
-use crate::sena;
+use crate::{mrclam, sena};
 use console::style;
 use drawing::Scene;
 use drive::Moment;
@@ -30,6 +30,7 @@ const CLOSE_UPS: usize = 12;
 pub fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
     let log = match args.format {
         LogFormat::Sena => sena::read(&args.file)?,
+        LogFormat::Mrclam => return mrclam::replay(args),
     };
     let robot = load_robot(args.robot.as_deref())?;
     prepare(&args.out)?;
