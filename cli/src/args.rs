@@ -62,6 +62,7 @@ different history.
 
 Example:
   haltline replay --format sena ../shared/data/sena/sena.csv.gz --out out/sena
+  haltline replay --format carmen intel.log --robot my_robot.toml
   haltline replay --format mrclam MRCLAM_Dataset1 --robot 3")]
     Replay(ReplayArgs),
     /// Print a requirement: its text, its assumptions, its evidence.
@@ -134,6 +135,8 @@ pub struct ReplayArgs {
 pub enum LogFormat {
     /// CSV: time, odometry increment and ranges in each line.
     Sena,
+    /// A log of the CARMEN toolkit with FLASER lines; the map is drawn, too.
+    Carmen,
     /// A folder of the UTIAS multi-robot data sets: the marker filter against known truth.
     Mrclam,
 }

@@ -12,6 +12,7 @@ macro_rules! say {
 }
 
 mod args;
+mod carmen;
 mod certificate;
 mod certify;
 mod claims;
