@@ -1,7 +1,7 @@
 //! The filter: the robot and the markers it has met, in one state.
 
 use super::cycle::Cycle;
-use super::factor::Factor;
+use super::factor::{Factor, close_gap};
 use super::index::{Index, Place};
 use super::linear::{Matrix, diagonal, sandwich};
 use super::model;
@@ -119,13 +119,12 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
 
     /// Takes the marker at `slot` out of the state.
     pub(super) fn remove(&mut self, slot: usize) {
-        let len = self.covariance.len();
         let Some(gone) = self.markers().get(slot).map(|marker| marker.id) else {
             return;
         };
         self.index.set_learned(gone, None);
         self.covariance.remove(slot);
-        self.markers.copy_within(slot.saturating_add(1)..len, slot);
+        close_gap(&mut self.markers, slot);
         let stay = self.markers.iter().enumerate().take(self.covariance.len());
         for (slot, marker) in stay {
             self.index.set_learned(marker.id, Some(slot));

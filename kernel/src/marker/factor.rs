@@ -233,12 +233,11 @@ impl<const N: usize> Factor<N> {
         for ((markers, robot), weight) in columns.into_iter().zip(robot).zip(pivots) {
             self.fold(slot, StateVector { robot, markers }, weight);
         }
-        let behind = slot.saturating_add(1);
-        self.pivots.copy_within(behind.., slot);
-        self.robot_rows.copy_within(behind.., slot);
-        self.columns.copy_within(behind.., slot);
+        close_gap(&mut self.pivots, slot);
+        close_gap(&mut self.robot_rows, slot);
+        close_gap(&mut self.columns, slot);
         for column in self.columns.as_flattened_mut() {
-            column.copy_within(behind.., slot);
+            close_gap(column, slot);
         }
         self.len = self.len.saturating_sub(1);
     }
@@ -283,5 +282,19 @@ const fn row(robot: Vector, marker: Vector) -> Row {
         robot,
         marker,
         variance: 0.0,
+    }
+}
+
+/// Moves everything behind `slot` up by one; the last entry is there twice.
+///
+/// Written out because `copy_within` keeps a panic for ranges that cannot be.
+pub(super) fn close_gap<T: Copy>(items: &mut [T], slot: usize) {
+    let mut items = items.iter_mut().skip(slot);
+    let Some(mut hole) = items.next() else {
+        return;
+    };
+    for next in items {
+        *hole = *next;
+        hole = next;
     }
 }
