@@ -22,7 +22,7 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
     pub(super) fn account(&mut self, moved: &Moved<'_>, report: &mut FrameReport) {
         let stamp = moved.frame.stamp;
         let fused = report.count(Verdict::Fused) > 0;
-        let trusted = fused || !self.recovery.in_doubt();
+        let trusted = fused || !self.recovery.in_doubt(stamp);
         if fused {
             self.recovery.clear();
         } else if report.count(Verdict::Gated) > 0 {
@@ -147,7 +147,7 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
 
     /// Takes markers that nobody knows into the state.
     pub(super) fn learn(&mut self, moved: &Moved<'_>, report: &mut FrameReport) {
-        let doubt = self.recovery.in_doubt();
+        let doubt = self.recovery.in_doubt(moved.frame.stamp);
         for (index, sighting) in moved.sightings() {
             let verdict = report.record(index).map(|record| record.verdict);
             if verdict != Some(Verdict::Unknown) || !self.rules.learn {

@@ -135,9 +135,10 @@ impl Recovery {
         }
     }
 
-    /// Whether the pose is in doubt: known markers are being rejected.
-    pub(super) const fn in_doubt(&self) -> bool {
-        self.first.is_some()
+    /// Whether the pose is in doubt: known markers are being rejected, or were until just now.
+    pub(super) fn in_doubt(&self, now: Instant) -> bool {
+        let since = self.last.map(|last| now.since(last).unwrap_or_default());
+        self.lost || since.is_some_and(|since| since <= PAUSE)
     }
 
     /// A sighting fitted.

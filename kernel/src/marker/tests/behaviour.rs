@@ -241,6 +241,13 @@ fn new_markers_wait_while_the_pose_is_in_doubt() {
     let seen = [drive.sees(1, shifted(LEFT, 1.0, 0.0)), drive.sees(9, AHEAD)];
     let expected = [Verdict::Gated, Verdict::Postponed];
     assert_eq!(verdicts(&drive.look(&seen)), expected);
+    // A single outlier is forgotten after a while.
+    let new = [drive.sees(9, AHEAD)];
+    for _ in 0..9 {
+        assert_eq!(verdicts(&drive.look(&new)), [Verdict::Postponed]);
+    }
+    drive.step(Increment::default());
+    assert_eq!(verdicts(&drive.look(&new)), [Verdict::Added]);
 }
 
 //= spec/ekf.md#ekf-11
