@@ -27,6 +27,9 @@ pub struct Margin {
     pub turn_tolerance_radps: f64,
     /// Speed bound of the obstacles, m/s.
     pub obstacle_speed_mps: f64,
+    /// Least inflation that a point has once the robot has come near to it, m: what slowing down
+    /// and scoring look ahead with. Stopping in time respects each point's own inflation.
+    pub near_m: f64,
     /// Whether speed and turn rate may come to rest each by its own ramp.
     pub separate_ramps: bool,
 }
@@ -202,6 +205,7 @@ impl Margin {
             self.speed_tolerance_mps,
             self.turn_tolerance_radps,
             self.obstacle_speed_mps,
+            self.near_m,
         ]
         .iter()
         .all(|value| value.is_finite() && *value >= 0.0)
