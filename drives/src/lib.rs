@@ -1,0 +1,15 @@
+//! Drives: from a decision of the kernel to bytes on a robot's wire, and back.
+//!
+//! Bottom up: [`arcos`], [`uc`] and [`cola`] are the wire formats, pure and total; [`drive`] is
+//! what an adapter promises; [`seekur`] and [`car`] are the adapters, state machines that are
+//! handed bytes and time and never block. None of these needs `std`. With the feature `std` (the
+//! default) come links, emulators, the conformance suite and the loop that drives a robot.
+//!
+//! Refused here: interpreting what is not understood. A frame that does not parse is an error
+//! with the frame in it, and never a motion.
+#![cfg_attr(not(feature = "std"), no_std)]
+
+pub mod arcos;
+pub mod cola;
+mod cursor;
+pub mod uc;
