@@ -10,6 +10,12 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 pub mod arcos;
+pub mod car;
 pub mod cola;
 mod cursor;
+pub mod drive;
+#[cfg(feature = "std")]
+pub mod emulator;
+pub mod governor;
+pub mod seekur;
 pub mod uc;

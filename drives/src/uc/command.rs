@@ -74,6 +74,19 @@ impl DriveLevel {
 pub struct SteeringLevel(i16);
 
 impl SteeringLevel {
+    /// Neutral pulse.
+    pub const ZERO: Self = Self(0);
+
+    /// As [`SteeringLevel::new`], for constants.
+    #[must_use]
+    pub const fn checked(level: i16) -> Option<Self> {
+        if level >= *STEERING.start() && level <= *STEERING.end() {
+            Some(Self(level))
+        } else {
+            None
+        }
+    }
+
     /// `None` outside ±1000.
     #[must_use]
     pub fn new(level: i16) -> Option<Self> {
