@@ -11,11 +11,17 @@
 
 pub mod arcos;
 pub mod car;
+#[cfg(feature = "std")]
+pub mod clock;
 pub mod cola;
+#[cfg(feature = "std")]
+pub mod conformance;
 mod cursor;
 pub mod drive;
 #[cfg(feature = "std")]
 pub mod emulator;
 pub mod governor;
+#[cfg(feature = "std")]
+pub mod link;
 pub mod seekur;
 pub mod uc;

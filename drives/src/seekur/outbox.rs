@@ -15,11 +15,10 @@ const ADMIN_MAX: usize = 16;
 pub(super) struct Outbox {
     emergency: bool,
     stop: bool,
-    /// VEL or VEL2, then RVEL.
-    first: Option<(u8, i32)>,
+    /// The newest set point.
+    words: Option<Words>,
+    /// Second half of a set point whose first is on the wire: halves of two are never mixed.
     second: Option<(u8, i32)>,
-    /// The second one's turn, so that new set points cannot starve it.
-    second_next: bool,
     /// Number and argument, oldest first.
     admin: [Option<(u8, Option<i32>)>; ADMIN_MAX],
     partial: Buffer<258>,
@@ -40,7 +39,7 @@ impl Outbox {
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        let set_points = self.first.is_none() && self.second.is_none();
+        let set_points = self.words.is_none() && self.second.is_none();
         let stops = !self.emergency && !self.stop;
         set_points && stops && self.admin[0].is_none() && self.partial.is_empty()
     }
@@ -58,19 +57,9 @@ impl Outbox {
         self.stop = true;
     }
 
-    /// Replaces the set points that wait.
-    pub(super) fn set(&mut self, words: Words) {
-        match words {
-            Words::VelRvel { mmps, degps } => {
-                self.first = Some((number::VEL, mmps));
-                self.second = Some((number::RVEL, degps));
-            }
-            Words::Vel2 { left, right } => {
-                let value = i16::from_be_bytes([left.cast_unsigned(), right.cast_unsigned()]);
-                self.first = Some((number::VEL2, i32::from(value)));
-                self.second = None;
-            }
-        }
+    /// Replaces the set point that waits.
+    pub(super) const fn set(&mut self, words: Words) {
+        self.words = Some(words);
     }
 
     /// Queues a command that moves nothing; a full queue loses it, as a line might.
@@ -91,15 +80,16 @@ impl Outbox {
         if core::mem::take(&mut self.stop) {
             return Some(Command::bare(number::STOP));
         }
-        let second_first = self.second_next && self.second.is_some();
-        let words = if second_first || self.first.is_none() {
-            self.second.take()
-        } else {
-            self.first.take()
-        };
-        self.second_next = !second_first;
-        if let Some((number, value)) = words {
+        if let Some((number, value)) = self.second.take() {
             return Some(Command::int(number, value));
+        }
+        match self.words.take() {
+            Some(Words::VelRvel { mmps, degps }) => {
+                self.second = Some((number::RVEL, degps));
+                return Some(Command::int(number::VEL, mmps));
+            }
+            Some(Words::Vel2 { left, right }) => return Some(Command::vel2(left, right)),
+            None => {}
         }
         let (number, argument) = self.admin[0].take()?;
         self.admin.rotate_left(1);
