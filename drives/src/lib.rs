@@ -16,12 +16,19 @@ pub mod clock;
 pub mod cola;
 #[cfg(feature = "std")]
 pub mod conformance;
+#[cfg(feature = "std")]
+pub mod control;
 mod cursor;
+pub use cursor::Buffer;
 pub mod drive;
 #[cfg(feature = "std")]
 pub mod emulator;
+#[cfg(feature = "std")]
+pub mod eye;
 pub mod governor;
 #[cfg(feature = "std")]
 pub mod link;
+#[cfg(feature = "std")]
+pub mod robots;
 pub mod seekur;
 pub mod uc;

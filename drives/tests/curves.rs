@@ -54,7 +54,7 @@ fn the_printed_offsets_drive_backwards_and_are_caught() {
             _ => 0.0,
         }
     };
-    assert_eq!(printed(100).round(), -57.0);
+    assert!((printed(100) + 56.87).abs() < 0.01);
     assert!(enumerate(|speed| printed(speed).clamp(-500.0, 1000.0)).is_err());
     let mirrored = SpeedCurve {
         forward_offset: -104.623_299,

@@ -5,11 +5,8 @@ use haltline::time::Duration;
 use super::Failure;
 use super::bench::Bench;
 use super::checks::{fail, moves, started};
-use super::rig::{Random, Rig};
+use super::rig::{Random, Rig, Spoiler};
 use super::twins::Twin;
-
-/// Ways to spoil a stream.
-type Spoiler = fn(&mut Random, Vec<u8>) -> Vec<u8>;
 
 const SPOILERS: [(&str, Spoiler); 6] = [
     ("random bytes between packets", |random, mut bytes| {

@@ -24,7 +24,7 @@ pub struct Rig {
     /// Bytes reach the host.
     pub to_host: bool,
     /// What goes to the host instead of, or besides, the robot's bytes.
-    pub spoil: Option<fn(&mut Random, Vec<u8>) -> Vec<u8>>,
+    pub spoil: Option<Spoiler>,
     /// Its randomness.
     pub random: Random,
     /// Set points that reached the robot.
@@ -39,6 +39,9 @@ pub struct Rig {
     /// When the last decision expires.
     pub expires: Instant,
 }
+
+/// A way to spoil a stream.
+pub type Spoiler = fn(&mut Random, Vec<u8>) -> Vec<u8>;
 
 /// A small generator of numbers that look random (xorshift64*).
 #[derive(Clone, Copy, Debug)]
@@ -98,7 +101,6 @@ impl Rig {
     }
 
     /// A decision of the kernel for this set point, good for one period and 2 ms.
-    #[must_use]
     pub fn decision(&self, linear: f64, turn: f64) -> Decision {
         let micro = |value: f64| (value * 1e6).round() as i32;
         let linear = Speed::from_um_per_s(micro(linear));

@@ -11,6 +11,9 @@ use haltline_scenarios::world::World;
 use super::Truth;
 use crate::cola::{self, Deframer, Header, frame_into, header_text};
 
+/// Farther returns are too faint.
+const SIGHT_M: f64 = 50.0;
+
 /// The scanner of an emulated robot.
 pub struct Scanner {
     mount: Mount,
@@ -120,7 +123,8 @@ impl Scanner {
         let origin = robot.then(Pose::new(mount.x_m, mount.y_m, 0.0));
         let bearing = mount.first_beam_rad() + f64::from(beam) * mount.increment_rad();
         let ray = Ray::new([origin.x, origin.y], origin.theta + bearing);
-        match cast(world, time_s - back_s, &ray, mount.range_max_m) {
+        // What is beyond the stated range is measured all the same; the host knows its limit.
+        match cast(world, time_s - back_s, &ray, SIGHT_M) {
             Some(hit) if hit.range >= mount.range_min_m => (hit.range * 1e3).round() as u16,
             _ => 0,
         }

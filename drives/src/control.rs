@@ -1,0 +1,382 @@
+//! The loop that drives a robot: fixed rate, every deadline accounted for, every end a stop.
+
+use std::any::Any;
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration as Wall;
+
+use haltline::decision::{Decision, Reason, StopStatus};
+use haltline::time::{Duration, Instant};
+use haltline_robots::Robot;
+use haltline_scenarios::controller::{RobotKernel, TickInputs, tick};
+use haltline_scenarios::drive::SetPoint;
+use haltline_scenarios::odometry::RawOdometry;
+use haltline_scenarios::proposer::RawCommand;
+use haltline_scenarios::sensor::RawScan;
+
+use crate::clock::Clock;
+use crate::drive::{Drive, DriveError, Feedback, State};
+use crate::eye::{Eye, ScanFault};
+use crate::link::Link;
+
+/// How often the wire is served between two ticks.
+const SERVE: Wall = Wall::from_millis(1);
+/// How often a lost link is tried again.
+const RETRY: Duration = Duration::from_ms(500);
+/// Longest farewell.
+const FAREWELL: Duration = Duration::from_ms(8000);
+
+/// What a proposer sees.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Now.
+    pub now: Instant,
+    /// Newest feedback.
+    pub feedback: Feedback,
+    /// The kernel's last decision.
+    pub decision: Option<Decision>,
+}
+
+/// One tick, for status lines and traces.
+#[derive(Clone, Copy, Debug)]
+pub struct Tick {
+    /// When it was.
+    pub now: Instant,
+    /// What the kernel decided.
+    pub decision: Decision,
+    /// How far the adapter is.
+    pub state: State,
+    /// Newest feedback.
+    pub feedback: Feedback,
+    /// What the adapter objected to since the last tick.
+    pub fault: Option<DriveError>,
+    /// What was wrong with a scan since the last tick.
+    pub scan_fault: Option<ScanFault>,
+    /// So far.
+    pub account: Account,
+}
+
+/// Deadlines and incidents.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Account {
+    /// Ticks so far.
+    pub ticks: u64,
+    /// Ticks that came later than period and jitter after the one before; the kernel stops for each.
+    pub missed: u64,
+    /// Latest tick, µs after its time.
+    pub latest_us: u64,
+    /// Links lost and opened again.
+    pub reconnections: u64,
+    /// Faults reported by the adapter.
+    pub faults: u64,
+}
+
+/// How a drive ended. The last word on the wire was a stop in every case but the last.
+#[derive(Debug)]
+pub enum Ending {
+    /// `end` was set: Ctrl-C, a signal, or the caller.
+    Asked,
+    /// The proposer has nothing more to propose.
+    Finished,
+    /// Something panicked; its payload.
+    Panicked(Box<dyn Any + Send>),
+    /// The link was lost and the farewell did not reach the robot: its own watchdog stops it.
+    Unreachable,
+}
+
+/// What the caller wants to happen at the next tick.
+#[derive(Debug, Default)]
+pub struct Operator {
+    /// Leave.
+    pub end: Arc<AtomicBool>,
+    /// Reset the kernel and switch the motors on; taken once.
+    pub reset: AtomicBool,
+    /// Emergency stop line.
+    pub emergency: AtomicBool,
+}
+
+impl Operator {
+    /// An operator whose `end` is set by Ctrl-C and by SIGTERM.
+    ///
+    /// # Errors
+    /// The handlers cannot be installed.
+    pub fn with_signals() -> io::Result<Self> {
+        let operator = Self::default();
+        for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+            signal_hook::flag::register(signal, Arc::clone(&operator.end))?;
+        }
+        Ok(operator)
+    }
+}
+
+/// Opens the robot's link; called again after a loss.
+pub type Opener = Box<dyn FnMut() -> io::Result<Box<dyn Link>>>;
+
+/// Everything that drives one robot.
+pub struct Control {
+    robot: Robot,
+    kernel: RobotKernel,
+    drive: Box<dyn Drive>,
+    opener: Opener,
+    link: Option<Box<dyn Link>>,
+    retry: Instant,
+    eye: Eye,
+    eye_open: bool,
+    clock: Clock,
+    unsent: Vec<u8>,
+    scans: Vec<RawScan>,
+    feedback: Feedback,
+    fresh: bool,
+    decision: Option<Decision>,
+    resetting: bool,
+    account: Account,
+    fault: Option<DriveError>,
+}
+
+impl Control {
+    /// Connects everything; nothing moves before [`Control::run`].
+    ///
+    /// # Errors
+    /// The link cannot be opened, or the kernel refuses the robot.
+    pub fn new(
+        robot: &Robot,
+        drive: Box<dyn Drive>,
+        mut opener: Opener,
+        eye: Eye,
+        clock: Clock,
+    ) -> io::Result<Self> {
+        let kernel = RobotKernel::new(robot.config)
+            .map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, format!("{error:?}")))?;
+        let link = Some(opener()?);
+        Ok(Self {
+            robot: robot.clone(),
+            kernel,
+            drive,
+            opener,
+            link,
+            retry: clock.now(),
+            eye,
+            eye_open: true,
+            clock,
+            unsent: Vec::new(),
+            scans: Vec::new(),
+            feedback: Feedback::default(),
+            fresh: false,
+            decision: None,
+            resetting: false,
+            account: Account::default(),
+            fault: None,
+        })
+    }
+
+    /// Drives until somebody ends it; always says good-bye to the robot.
+    ///
+    /// - `propose`: the motion somebody wants, m/s with rad/s or 1/m; `None` ends the drive
+    /// - `observe`: called after each tick
+    pub fn run(
+        &mut self,
+        operator: &Operator,
+        mut propose: impl FnMut(&View) -> Option<[f64; 2]>,
+        mut observe: impl FnMut(&Tick),
+    ) -> Ending {
+        let driven = catch_unwind(AssertUnwindSafe(|| {
+            self.ticks(operator, &mut propose, &mut observe)
+        }));
+        let rested = self.farewell();
+        match driven {
+            Err(payload) => Ending::Panicked(payload),
+            Ok(_) if !rested => Ending::Unreachable,
+            Ok(ending) => ending,
+        }
+    }
+
+    fn ticks(
+        &mut self,
+        operator: &Operator,
+        propose: &mut dyn FnMut(&View) -> Option<[f64; 2]>,
+        observe: &mut dyn FnMut(&Tick),
+    ) -> Ending {
+        let timing = &self.robot.config.timing;
+        let (period, most) = (timing.period, timing.period.plus(timing.jitter));
+        let mut due = self.clock.now().plus(period);
+        let mut last: Option<Instant> = None;
+        while !operator.end.load(Ordering::Relaxed) {
+            self.serve_until(due);
+            let now = self.clock.now();
+            let late = now.since(due).unwrap_or_default().as_us();
+            self.account.latest_us = self.account.latest_us.max(late);
+            //= spec/drive.md#drive-12
+            //# The drive loop MUST count a tick that comes later than control period plus jitter after the one before, and stop for it.
+            let gap = last.and_then(|last| now.since(last)).unwrap_or_default();
+            self.account.missed += u64::from(gap > most);
+            last = Some(now);
+            // Ticks that were missed are not made up for.
+            due = if late > period.as_us() { now } else { due }.plus(period);
+            let view = View {
+                now,
+                feedback: self.feedback,
+                decision: self.decision,
+            };
+            let Some(wanted) = propose(&view) else {
+                return Ending::Finished;
+            };
+            observe(&self.tick(operator, wanted, now));
+        }
+        Ending::Asked
+    }
+
+    fn tick(&mut self, operator: &Operator, wanted: [f64; 2], now: Instant) -> Tick {
+        self.account.ticks += 1;
+        self.resetting |= operator.reset.swap(false, Ordering::Relaxed);
+        if self.resetting && self.drive.state() == State::Disabled {
+            self.drive.enable(now);
+        }
+        let inputs = self.inputs(operator, wanted, now);
+        let decision = tick(&mut self.kernel, &self.robot, &inputs, now.as_us());
+        if decision.status != StopStatus::Latched {
+            self.resetting = false;
+        }
+        self.decision = Some(decision);
+        let refused = self.drive.send(&decision, now).err();
+        self.serve(now);
+        let fault = refused.or(self.fault.take());
+        self.account.faults += u64::from(fault.is_some());
+        Tick {
+            now,
+            decision,
+            state: self.drive.state(),
+            feedback: self.feedback,
+            fault,
+            scan_fault: self.eye.fault(),
+            account: self.account,
+        }
+    }
+
+    fn inputs(&mut self, operator: &Operator, [v, turn]: [f64; 2], now: Instant) -> TickInputs {
+        let steered = matches!(
+            self.robot.values.kinematics,
+            haltline_robots::Kinematics::Ackermann(_)
+        );
+        let motion = if steered {
+            SetPoint::Arc { v, curvature: turn }
+        } else {
+            SetPoint::Twist { v, omega: turn }
+        };
+        let odometry = self.fresh.then_some(RawOdometry {
+            stamp_us: self.feedback.stamp.as_us(),
+            pose: self.feedback.pose,
+            twist: self.feedback.twist,
+            curvature_per_m: None,
+        });
+        self.fresh = false;
+        // The motors must be on, and zero on the wire, before the kernel may run.
+        let ready = self.resetting && self.drive.state() == State::Driving;
+        TickInputs {
+            scans: core::mem::take(&mut self.scans),
+            odometry,
+            command: Some(RawCommand {
+                stamp_us: now.as_us(),
+                motion,
+            }),
+            emergency_stop: operator.emergency.load(Ordering::Relaxed),
+            reset_us: ready.then_some(now.as_us()),
+        }
+    }
+
+    fn serve_until(&mut self, due: Instant) {
+        loop {
+            let now = self.clock.now();
+            self.serve(now);
+            let left = due.since(now).unwrap_or_default();
+            if left == Duration::ZERO {
+                return;
+            }
+            std::thread::sleep(SERVE.min(Wall::from_micros(left.as_us())));
+        }
+    }
+
+    /// Moves bytes both ways; never waits.
+    fn serve(&mut self, now: Instant) {
+        if self.eye_open && self.eye.exchange(now, &mut self.scans).is_err() {
+            // No scans any more: the kernel stops by itself.
+            self.eye_open = false;
+        }
+        if self.link.is_none() && now >= self.retry {
+            self.retry = now.plus(RETRY);
+            self.link = (self.opener)().ok();
+            if self.link.is_some() {
+                self.account.reconnections += 1;
+                self.unsent.clear();
+                self.drive.reconnected(now);
+            }
+        }
+        if self.exchange(now).is_err() {
+            self.link = None;
+            self.unsent.clear();
+            self.retry = now.plus(RETRY);
+        }
+        self.fault = self.drive.fault().or(self.fault.take());
+        if let Some(feedback) = self.drive.feedback() {
+            self.feedback = feedback;
+            self.fresh = true;
+        }
+    }
+
+    fn exchange(&mut self, now: Instant) -> io::Result<()> {
+        let Some(link) = &mut self.link else {
+            return Ok(());
+        };
+        let mut heard = Vec::new();
+        let read = link.read(&mut heard);
+        self.drive.receive(&heard, now);
+        read?;
+        self.drive.tick(now);
+        let mut room = [0; 512];
+        // What the wire does not take is not queued: old set points must not pile up behind it.
+        while self.unsent.len() < room.len() {
+            let count = self.drive.outgoing(&mut room, now);
+            if count == 0 {
+                break;
+            }
+            self.unsent
+                .extend_from_slice(room.get(..count).unwrap_or_default());
+        }
+        let written = link.write(&self.unsent)?;
+        self.unsent.drain(..written);
+        Ok(())
+    }
+
+    /// Ramps to rest, motors off, good-bye; `false` if the robot could not be reached.
+    fn farewell(&mut self) -> bool {
+        let start = self.clock.now();
+        self.drive.shut_down(start);
+        loop {
+            let now = self.clock.now();
+            if self.exchange(now).is_err() {
+                return false;
+            }
+            let waited = now.since(start).unwrap_or_default();
+            if self.drive.state() == State::Closed && self.unsent.is_empty() {
+                return self.link.is_some();
+            }
+            if self.link.is_none() || waited > FAREWELL {
+                return false;
+            }
+            std::thread::sleep(SERVE);
+        }
+    }
+
+    /// Deadlines and incidents so far.
+    #[must_use]
+    pub const fn account(&self) -> Account {
+        self.account
+    }
+}
+
+/// Whether a decision holds the robot for lack of an operator.
+#[must_use]
+pub fn waits_for_operator(decision: &Decision) -> bool {
+    decision.status == StopStatus::Latched && decision.reason != Reason::EmergencyStopLine
+}
