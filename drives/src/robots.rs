@@ -65,13 +65,15 @@ impl Kind {
 
     /// The emulated robot at `start`, whose drive stops by itself as the file promises.
     ///
-    /// - `watchdog_s`: instead of the file's, for a robot that does not keep its promise
+    /// - `watchdog_s`: told and kept instead of the file's
+    /// - `ignores_watchdog`: a robot that tells a watchdog and does not stop by it
     #[must_use]
     pub fn emulated(
         self,
         file: &File,
         start: [f64; 3],
         watchdog_s: Option<f64>,
+        ignores_watchdog: bool,
         now: Instant,
     ) -> Box<dyn Robot> {
         let silent = &file.values.host_death;
@@ -79,6 +81,7 @@ impl Kind {
             Self::SeekurJr => Box::new(Seekur::new(
                 SeekurModel {
                     watchdog_ms: milliseconds(watchdog_s.unwrap_or(silent.watchdog_s)),
+                    ignores_watchdog,
                     sip_cycle_ms: 20,
                     braking: [silent.braking_mps2, silent.angular_braking_radps2],
                     start,

@@ -15,6 +15,8 @@ use crate::arcos::{Argument, Command, Deframer, Packet, Sip, VEL2_DIVISOR};
 pub struct SeekurModel {
     /// Silence after which it stops; 0 never.
     pub watchdog_ms: u16,
+    /// Only warns when it expires, as some simulators do.
+    pub ignores_watchdog: bool,
     /// Time between two SIPs.
     pub sip_cycle_ms: u8,
     /// Whether it answers CONFIG.
@@ -31,6 +33,7 @@ impl Default for SeekurModel {
     fn default() -> Self {
         Self {
             watchdog_ms: 2000,
+            ignores_watchdog: false,
             sip_cycle_ms: 100,
             tells_config: true,
             skid: 1.0,
@@ -246,7 +249,7 @@ impl Seekur {
     fn is_left_alone(&self, now: Instant) -> bool {
         let most = Duration::from_ms(u64::from(self.model.watchdog_ms));
         let silent = now.since(self.heard).is_some_and(|gap| gap > most);
-        self.model.watchdog_ms > 0 && silent
+        self.model.watchdog_ms > 0 && silent && !self.model.ignores_watchdog
     }
 
     fn live(&mut self, now: Instant, dt_s: f64) {
