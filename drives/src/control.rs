@@ -184,6 +184,8 @@ impl Control {
         let driven = catch_unwind(AssertUnwindSafe(|| {
             self.ticks(operator, &mut propose, &mut observe)
         }));
+        //= spec/drive.md#drive-13
+        //# Ctrl-C, a request to terminate and a panic MUST end the drive with a ramp to rest on the wire.
         let rested = self.farewell();
         match driven {
             Err(payload) => Ending::Panicked(payload),

@@ -164,6 +164,8 @@ impl Governor {
             return self.withhold(now);
         }
         if self.holding {
+            //= spec/drive.md#drive-03
+            //# After an interruption an adapter MUST withhold motion until a decision asks for rest.
             let released = may_release && self.wire.is_rest() && wanted.is_rest();
             if !released {
                 return self.withhold(now);
@@ -191,6 +193,8 @@ impl Governor {
     /// Starts or continues the ramp to rest; nothing but a decision for rest ends it.
     pub fn withhold(&mut self, now: Instant) -> Setpoint {
         // What was in force ran until it expired, no longer: the ramp starts there.
+        //= spec/drive.md#drive-05
+        //# When no decision is in force, an adapter MUST ramp the last set point down to zero on its curvature, at no less than the sure decelerations.
         let ended = self.expires.filter(|expires| *expires < now);
         let from = if self.holding {
             self.since

@@ -24,6 +24,9 @@ fn enumerate(level: impl Fn(i16) -> f64) -> Result<(), String> {
     Ok(())
 }
 
+//= spec/drive.md#drive-11
+//= type=test
+//# A speed MUST become a drive level of the same sign, and a larger speed a level that is no smaller, for every speed that can be asked for.
 #[test]
 fn thrust_has_the_sign_of_the_speed_over_all_65536_speeds() {
     enumerate(|speed| f64::from(SPEED.level(speed).thrust())).unwrap();

@@ -150,6 +150,9 @@ fn kill_many(case: &Case) -> (usize, f64) {
     worst.into_inner().unwrap()
 }
 
+//= spec/drive.md#drive-14
+//= type=test
+//# When the controlling process is killed, the robot MUST rest no later than its dead-man time plus `v / b_silent` after it last heard a set point.
 #[test]
 fn a_hundred_kills_in_motion_end_at_rest_in_time_and_without_contact() {
     for case in [seekur("tcp:127.0.0.1:0"), car()] {
@@ -180,6 +183,9 @@ fn a_robot_without_watchdog_is_caught() {
 }
 
 /// An adapter does not enable a robot whose watchdog is off or longer than its file says.
+//= spec/drive.md#drive-10
+//= type=test
+//# An adapter MUST read back the dead-man time of its drive and refuse to enable it when it is off or longer than the robot file says.
 #[test]
 fn a_robot_that_tells_a_longer_watchdog_is_not_driven() {
     let case = seekur("pty");
@@ -204,6 +210,9 @@ fn a_robot_that_tells_a_longer_watchdog_is_not_driven() {
     );
 }
 
+//= spec/drive.md#drive-13
+//= type=test
+//# Ctrl-C, a request to terminate and a panic MUST end the drive with a ramp to rest on the wire.
 #[test]
 fn signals_and_panics_end_in_a_ramp_and_a_good_bye() {
     for case in [seekur("pty"), car()] {

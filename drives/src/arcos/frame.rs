@@ -161,6 +161,8 @@ impl Deframer {
         let (content, sum) = self.body.as_slice().split_last_chunk::<2>()?;
         let id = content.first().copied().unwrap_or_default();
         let mut packet = Packet::default();
+        //= spec/drive.md#drive-09
+        //# Bytes that are not a whole and valid frame of the drive MUST NOT cause motion, nor end the adapter, nor change its feedback.
         let good = packet.body.extend(content) && u16::from_be_bytes(*sum) == checksum(content);
         Some(if good {
             Ok(packet)

@@ -35,6 +35,8 @@ impl SpeedCurve {
     #[must_use]
     pub fn level(&self, speed_mmps: i16) -> DriveLevel {
         let speed = f64::from(speed_mmps).abs() * 1e-3;
+        //= spec/drive.md#drive-11
+        //# A speed MUST become a drive level of the same sign, and a larger speed a level that is no smaller, for every speed that can be asked for.
         let level = if speed_mmps > 0 {
             let level = self.forward_slope * speed + self.forward_offset;
             DriveLevel::forward(cut(level, *FORWARD.end()))

@@ -187,6 +187,8 @@ impl Adapter {
         self.motors = sip.flags.has(Flags::MOTORS);
         let button = sip.flags.has(Flags::STOP_BUTTON) || sip.flags.has(Flags::E_STALL);
         if (before && !self.motors) || (button && self.wanted.is_some()) {
+            //= spec/drive.md#drive-15
+            //# An adapter MUST stop and wait for the operator when the drive reports a pressed stop button or that its motors went off.
             // Only the operator switches them on again.
             self.wanted = None;
             self.interrupt(now);
@@ -227,6 +229,8 @@ impl Adapter {
         let found = self.told.and_then(|told| told.watchdog_ms);
         let wanted_ms = self.config.watchdog_max_ms;
         match found {
+            //= spec/drive.md#drive-10
+            //# An adapter MUST read back the dead-man time of its drive and refuse to enable it when it is off or longer than the robot file says.
             Some(ms) if ms > 0 && ms <= wanted_ms => Ok(()),
             None if self.config.accept_untold_watchdog => Ok(()),
             found => Err(DriveError::new(
@@ -288,6 +292,8 @@ impl Adapter {
             return;
         }
         if self.wanted.is_some() || self.motors {
+            //= spec/drive.md#drive-02
+            //# The first set point after a handshake, a gap, a reconnection or a restart of the drive MUST be zero.
             // Never a bare PULSE: it would revive whatever set point the robot remembers.
             self.put(self.governor.wire());
         } else {
@@ -354,8 +360,12 @@ impl Drive for Adapter {
             self.put(ramp);
             return Err(DriveError::new(Frame::Decision, Fault::WrongMotion));
         }
+        //= spec/drive.md#drive-01
+        //# An adapter MUST NOT send a set point other than zero before its handshake is complete and the operator has enabled the drive.
         let release = self.is_ready() && !self.touching && self.outbox.is_empty();
         let sent = self.governor.decide(decision, now, release);
+        //= spec/drive.md#drive-04
+        //# The set point of a decision MUST be on the wire within one control period.
         self.put(sent);
         if now > decision.expires {
             return Err(DriveError::new(Frame::Decision, Fault::Expired));

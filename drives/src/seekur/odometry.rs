@@ -81,6 +81,8 @@ impl WheelOdometry {
     fn measured(&self, sip: &Sip) -> [f64; 2] {
         let (left, right) = (f64::from(sip.left), f64::from(sip.right));
         let wheels = match sip.tail.rotation_decidegps {
+            //= spec/drive.md#drive-07
+            //# Speed and turn MUST keep their signs, and zero stay zero, from the decision to the motion and from the motion to the feedback.
             Some(rate) => (f64::from(rate) * 0.1).to_radians(),
             None => (right - left) / 2.0 * DIFF_CONV,
         };

@@ -76,9 +76,13 @@ pub fn to_wire(config: &Seekur, linear_umps: i32, angular_uradps: i32) -> Words 
     };
     let speed_max = f64::from(config.speed_max_mmps);
     let turn_max = f64::from(config.turn_max_degps).to_radians();
+    //= spec/drive.md#drive-06
+    //# A set point beyond a limit of the drive MUST be scaled on its curvature; one whose curvature cannot be steered becomes a stop.
     let mut factor = limit(v_mmps, speed_max).min(limit(w_radps, turn_max));
     match config.wheels {
         Wheels::VelRvel => Words::VelRvel {
+            //= spec/drive.md#drive-08
+            //# The set point on the wire MUST be the decision's within the stated resolution of the wire.
             mmps: whole(libm::trunc(v_mmps * factor)),
             degps: whole(libm::round((w_radps * factor).to_degrees())),
         },
