@@ -174,7 +174,7 @@ fn silent_stop(rig: &mut Rig, bench: &dyn Bench, v: f64, turn: f64) -> Result<f6
 type Incident = fn(&mut Rig, &dyn Bench);
 
 pub(super) fn zero_first(bench: &dyn Bench, twin: Option<Twin>) -> Outcome {
-    let incidents: [(&str, Incident); 6] = [
+    let incidents: [(&str, Incident); 7] = [
         ("link cut both ways", |rig, bench| {
             cut(rig, bench, true, true)
         }),
@@ -185,6 +185,11 @@ pub(super) fn zero_first(bench: &dyn Bench, twin: Option<Twin>) -> Outcome {
             rig.pause(bench.watchdog().plus(Duration::from_ms(500)));
         }),
         ("reconnected", |rig, _| rig.drive.reconnected(rig.now)),
+        ("another host takes over", |rig, bench| {
+            // The one before left its set point behind; its robot has stopped by itself.
+            rig.pause(bench.watchdog().plus(Duration::from_ms(3000)));
+            rig.drive = bench.drive(rig.now);
+        }),
         ("robot restarted", |rig, _| rig.robot.reboot(rig.now)),
         ("bumped", |rig, _| {
             rig.robot.bump(true);
@@ -201,7 +206,7 @@ pub(super) fn zero_first(bench: &dyn Bench, twin: Option<Twin>) -> Outcome {
         incident(&mut rig, bench);
         after(&mut rig, bench, name, v, turn)?;
     }
-    Ok("6 kinds of interruption: zero first, motion only after a decision for rest".to_owned())
+    Ok("7 kinds of interruption: zero first, motion only after a decision for rest".to_owned())
 }
 
 fn cut(rig: &mut Rig, bench: &dyn Bench, robot: bool, host: bool) {

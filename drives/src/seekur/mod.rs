@@ -72,11 +72,14 @@ impl Adapter {
     /// An adapter that starts to shake hands at its first tick.
     #[must_use]
     pub fn new(config: Config, now: Instant) -> Self {
+        let mut outbox = Outbox::default();
+        // Whoever spoke to the robot before may have left a set point behind.
+        outbox.clear();
         Self {
             config,
             governor: Governor::new(config.braking, false),
             deframer: Deframer::default(),
-            outbox: Outbox::default(),
+            outbox,
             link: Link::Shaking(Handshake::new(now)),
             odometry: WheelOdometry::new(config.skid),
             feedback: None,

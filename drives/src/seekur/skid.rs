@@ -15,7 +15,8 @@ pub struct SkidFit {
 ///
 /// Turn at least a full circle each time, to both sides, and take the true turn from the scanner
 /// or a mark on the floor. `None` if there is no turn of at least half a radian, a number is not
-/// finite, the signs disagree, or the factor is not in (0.05, 1].
+/// finite, the signs disagree, or the factor is not in (0.05, 1.05]; what is above 1 is taken for an error
+/// of measurement and counts as 1.
 /// # Source
 /// Loh 2018, ch. 2: omega = xi (w_r - w_l) / 2 * d / L.
 #[must_use]
@@ -39,8 +40,8 @@ pub fn skid_factor(turns: &[(f64, f64)]) -> Option<SkidFit> {
     } else {
         libm::sqrt(rest / freedom as f64 / square)
     };
-    (factor > 0.05 && factor <= 1.0).then_some(SkidFit {
-        factor,
+    (factor > 0.05 && factor <= 1.05).then_some(SkidFit {
+        factor: factor.min(1.0),
         standard_error,
         turns: count,
     })

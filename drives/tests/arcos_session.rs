@@ -1,0 +1,516 @@
+//! Each end of ARCOS alone: the emulator against bytes a client of somebody else's sends, the
+//! adapter against a server that is scripted from the sheet.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use haltline::decision::{Action, Decision, Reason, StopStatus};
+use haltline::input::{Motion, Twist};
+use haltline::time::{Duration, Instant};
+use haltline::units::{AngularSpeed, Speed};
+use haltline_drives::arcos::command::number;
+use haltline_drives::arcos::config::{Config, text};
+use haltline_drives::arcos::sip::{Bumpers, Flags, Tail};
+use haltline_drives::arcos::{Argument, Command, Deframer, Packet, Sip};
+use haltline_drives::drive::{Drive, Fault, State};
+use haltline_drives::emulator::{Robot, Seekur, SeekurModel};
+use haltline_drives::robots::seekur_config;
+use haltline_drives::seekur::{Adapter, skid_factor};
+
+fn at(ms: u64) -> Instant {
+    Instant::from_us(1_000_000 + ms * 1000)
+}
+
+fn hex(text: &str) -> Vec<u8> {
+    let digits = text.as_bytes().chunks(2);
+    digits
+        .map(|pair| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap())
+        .collect()
+}
+
+fn packets(bytes: &[u8]) -> Vec<Packet> {
+    let mut deframer = Deframer::default();
+    bytes
+        .iter()
+        .filter_map(|byte| deframer.push(*byte, at(0)))
+        .map(Result::unwrap)
+        .collect()
+}
+
+/// A robot and a client that only knows bytes.
+struct Wire {
+    robot: Seekur,
+    now_ms: u64,
+}
+
+impl Wire {
+    fn new(model: SeekurModel) -> Self {
+        Self {
+            robot: Seekur::new(model, at(0)),
+            now_ms: 0,
+        }
+    }
+
+    fn say(&mut self, bytes: &str) -> Vec<Packet> {
+        self.robot.receive(&hex(bytes), at(self.now_ms));
+        packets(&self.robot.outgoing())
+    }
+
+    fn wait(&mut self, ms: u64) -> Vec<Packet> {
+        for _ in 0..ms {
+            self.now_ms += 1;
+            self.robot.step(at(self.now_ms));
+        }
+        packets(&self.robot.outgoing())
+    }
+
+    /// The bytes that an independent client library was seen to send.
+    fn open(&mut self) {
+        assert_eq!(self.say("fafb03000000"), [Packet::new(0, &[]).unwrap()]);
+        assert_eq!(self.say("fafb03010001"), [Packet::new(1, &[]).unwrap()]);
+        let names = self.say("fafb03020002");
+        assert_eq!(names[0].id(), 2);
+        assert_eq!(names[0].data().iter().filter(|byte| **byte == 0).count(), 3);
+        self.say("fafb06013b0100023b"); // OPEN 1
+        assert!(self.wait(101).iter().any(|packet| packet.id() == 0x32));
+        self.say("fafb06043b0100053b"); // ENABLE 1
+    }
+
+    fn speed(&self) -> f64 {
+        self.robot.truth().twist[0]
+    }
+}
+
+#[test]
+fn any_client_can_drive_the_emulator() {
+    let mut wire = Wire::new(SeekurModel::default());
+    wire.open();
+    let config = wire.say("fafb06123b0100133b");
+    let config = Config::decode(&config[0]).unwrap();
+    assert_eq!(
+        (config.watchdog_ms, config.sip_cycle_ms),
+        (Some(2000), Some(100))
+    );
+    assert_eq!(config.subclass.as_slice(), b"seekurjr");
+    wire.say("fafb060b3bf401ff3c"); // VEL 500
+    let sips = wire.wait(1500);
+    assert!((wire.speed() - 0.5).abs() < 1e-6);
+    let sip = Sip::decode(sips.last().unwrap()).unwrap();
+    assert!(sip.moving && sip.flags.has(Flags::MOTORS));
+    assert_eq!((sip.left, sip.right), (500, 500));
+    wire.say("fafb060b1bf401ff1c"); // VEL -500
+    wire.wait(1900);
+    wire.say("fafb03000000"); // PULSE
+    wire.wait(1500);
+    assert!((wire.speed() + 0.5).abs() < 1e-6, "{}", wire.speed());
+    wire.say("fafb031d001d"); // STOP
+    wire.wait(1500);
+    assert!(wire.speed().abs() < 1e-9);
+    wire.say("fafb06153b0f00243b"); // RVEL 15: counter-clockwise
+    wire.wait(900);
+    assert!((wire.robot.truth().twist[1].to_degrees() - 15.0).abs() < 1e-6);
+    wire.say("fafb06203be7190754"); // VEL2: left +25, right -25 turns clockwise
+    wire.wait(1900);
+    assert!(wire.robot.truth().twist[1] < -0.5);
+    wire.say("fafb06023b0100033b"); // CLOSE
+    assert!(wire.wait(3000).is_empty(), "a closed server is silent");
+    assert!(wire.speed().abs() < 1e-9);
+}
+
+#[test]
+fn without_argument_open_and_close_work_too() {
+    let mut wire = Wire::new(SeekurModel::default());
+    for bytes in [
+        "fafb03000000",
+        "fafb03010001",
+        "fafb03020002",
+        "fafb03010001",
+    ] {
+        wire.say(bytes);
+    }
+    assert!(
+        !wire.wait(200).is_empty(),
+        "SIPs after OPEN without argument"
+    );
+    wire.say("fafb03020002");
+    assert!(wire.wait(500).is_empty());
+}
+
+#[test]
+fn a_sync_out_of_order_is_answered_with_255() {
+    let mut wire = Wire::new(SeekurModel::default());
+    assert_eq!(wire.say("fafb03020002")[0].id(), 255);
+    wire.say("fafb03000000");
+    assert_eq!(wire.say("fafb03000000")[0].id(), 255);
+}
+
+/// The trap of the manuals: after the watchdog's stop the next packet revives the set point.
+#[test]
+fn the_emulator_s_watchdog_stops_and_any_packet_revives() {
+    let mut wire = Wire::new(SeekurModel::default());
+    wire.open();
+    wire.say("fafb060b3bf401ff3c"); // VEL 500
+    wire.wait(1900);
+    assert!(
+        (wire.speed() - 0.5).abs() < 1e-6,
+        "within the watchdog time it drives"
+    );
+    wire.wait(1500);
+    assert!(
+        wire.speed().abs() < 1e-6,
+        "2 s and 1 s of braking later it rests"
+    );
+    wire.say("fafb03000000"); // PULSE
+    wire.wait(1100);
+    assert!(
+        (wire.speed() - 0.5).abs() < 1e-6,
+        "a PULSE has revived the old set point"
+    );
+}
+
+/// A server whose every packet is written by the test.
+struct Script {
+    adapter: Adapter,
+    now_ms: u64,
+    said: Vec<(u8, Option<i32>)>,
+    deframer: Deframer,
+}
+
+fn adapter() -> Adapter {
+    let file = haltline_robots::Robot::embedded("seekur_jr").unwrap();
+    Adapter::new(seekur_config(&file), at(0))
+}
+
+impl Script {
+    fn new() -> Self {
+        Self {
+            adapter: adapter(),
+            now_ms: 0,
+            said: Vec::new(),
+            deframer: Deframer::default(),
+        }
+    }
+
+    fn hear(&mut self, packet: Packet) {
+        self.adapter
+            .receive(packet.to_bytes().as_slice(), at(self.now_ms));
+    }
+
+    /// What the adapter says within `ms`; all of it is kept in `said`, too.
+    fn wait(&mut self, ms: u64) -> Vec<(u8, Option<i32>)> {
+        let mut new = Vec::new();
+        for _ in 0..ms {
+            self.now_ms += 1;
+            let now = at(self.now_ms);
+            self.adapter.tick(now);
+            let mut room = [0; 300];
+            let count = self.adapter.outgoing(&mut room, now);
+            for byte in &room[..count] {
+                let Some(packet) = self.deframer.push(*byte, now) else {
+                    continue;
+                };
+                let packet = packet.unwrap();
+                let command = Command::decode(&packet).unwrap();
+                let value = match command.argument {
+                    Argument::Int(value) => Some(value),
+                    _ => None,
+                };
+                new.push((command.number, value));
+            }
+        }
+        self.said.extend(&new);
+        new
+    }
+
+    fn sip(&mut self, change: impl FnOnce(&mut Sip)) {
+        let mut sip = Sip {
+            flags: Flags(Flags::MOTORS),
+            tail: Tail {
+                battery_decivolts: Some(260),
+                ..Tail::default()
+            },
+            ..Sip::default()
+        };
+        change(&mut sip);
+        self.hear(sip.encode().unwrap());
+    }
+
+    fn config(&mut self, watchdog_ms: u16) {
+        let words = Some(0);
+        let config = Config {
+            class: text(b"Pioneer"),
+            subclass: text(b"seekurjr"),
+            rotation_top_degps: words,
+            speed_top_mmps: words,
+            rotation_acceleration_top_degps2: words,
+            acceleration_top_mmps2: words,
+            sip_cycle_ms: Some(100),
+            low_battery_decivolts: words,
+            watchdog_ms: Some(watchdog_ms),
+            ..Config::default()
+        };
+        self.hear(config.encode().unwrap());
+    }
+
+    fn handshake(&mut self) {
+        for step in 0..3 {
+            assert_eq!(self.wait(10).last(), Some(&(step, None)));
+            self.hear(Packet::new(step, if step == 2 { b"a\0b\0c\0" } else { &[] }).unwrap());
+        }
+        let said = self.wait(20);
+        assert_eq!(said, [(number::OPEN, Some(1)), (number::CONFIG, Some(1))]);
+        self.sip(|sip| sip.flags = Flags(0));
+        self.config(2000);
+    }
+
+    fn decide(&mut self, linear_mps: f64, angular_radps: f64) -> Result<(), Fault> {
+        let now = at(self.now_ms);
+        let decision = Decision {
+            action: Action::Pass,
+            setpoint: Motion::Twist(Twist {
+                linear: Speed::from_um_per_s((linear_mps * 1e6) as i32),
+                angular: AngularSpeed::from_urad_per_s((angular_radps * 1e6) as i32),
+            }),
+            reason: Reason::None,
+            status: StopStatus::Running,
+            expires: now.plus(Duration::from_ms(42)),
+            verdict: None,
+            factor_permille: 1000,
+        };
+        self.adapter
+            .send(&decision, now)
+            .map_err(|error| error.fault)
+    }
+
+    /// Handshake, motors on, zero confirmed: decisions are sent.
+    fn driving() -> Self {
+        let mut script = Self::new();
+        script.handshake();
+        script.wait(100);
+        script.adapter.enable(at(script.now_ms));
+        script.wait(50);
+        for _ in 0..3 {
+            script.sip(|_| {});
+            let _ = script.decide(0.0, 0.0);
+            script.wait(40);
+        }
+        assert_eq!(script.adapter.state(), State::Driving);
+        script.said.clear();
+        script
+    }
+}
+
+#[test]
+fn the_adapter_opens_a_scripted_server_and_tells_it_zero_before_enable() {
+    let mut script = Script::new();
+    script.handshake();
+    assert_eq!(script.adapter.state(), State::Disabled);
+    let said = script.wait(100);
+    let place = |wanted: (u8, Option<i32>)| said.iter().position(|got| *got == wanted);
+    assert!(place((number::STOP, None)).is_some());
+    assert!(place((number::VEL, Some(0))).is_some() && place((number::RVEL, Some(0))).is_some());
+    assert!(place((number::JOYDRIVE, Some(0))).is_some());
+    assert!(
+        place((number::SETA, Some(500))).is_some() && place((number::SETA, Some(-500))).is_some()
+    );
+    assert!(place((number::ENABLE, Some(1))).is_none());
+    assert_eq!(
+        script.said[0],
+        (number::STOP, None),
+        "the very first packet stops"
+    );
+    script.adapter.enable(at(script.now_ms));
+    let said = script.wait(60);
+    assert_eq!(said[0], (number::STOP, None));
+    assert_eq!(said.last(), Some(&(number::ENABLE, Some(1))));
+}
+
+#[test]
+fn a_server_still_open_is_stopped_closed_and_asked_again() {
+    let mut script = Script::new();
+    assert_eq!(
+        script.wait(10),
+        [(number::STOP, None), (number::SYNC0, None)]
+    );
+    script.sip(|sip| sip.moving = true);
+    let said = script.wait(400);
+    assert_eq!(
+        said,
+        [
+            (number::STOP, None),
+            (number::CLOSE, Some(1)),
+            (number::SYNC0, None)
+        ]
+    );
+}
+
+#[test]
+fn a_server_that_wants_the_count_restarted_gets_it() {
+    let mut script = Script::new();
+    script.wait(10);
+    script.hear(Packet::new(0, &[]).unwrap());
+    assert_eq!(script.wait(10), [(number::SYNC1, None)]);
+    script.hear(Packet::new(255, &[]).unwrap());
+    assert_eq!(script.wait(10), [(number::SYNC0, None)]);
+}
+
+#[test]
+fn a_silent_server_is_dislodged_and_reported() {
+    let mut script = Script::new();
+    let said = script.wait(4000);
+    assert!(said.contains(&(number::OPEN, Some(1))), "{said:?}");
+    script.wait(9000);
+    assert_eq!(
+        script.adapter.fault().map(|error| error.fault),
+        Some(Fault::NoAnswer)
+    );
+    assert_eq!(script.adapter.state(), State::Connecting);
+}
+
+#[test]
+fn a_watchdog_that_is_off_or_too_long_or_not_told_keeps_the_motors_off() {
+    for watchdog_ms in [0, 2001, u16::MAX] {
+        let mut script = Script::new();
+        script.handshake();
+        script.config(watchdog_ms);
+        script.wait(100);
+        script.adapter.enable(at(script.now_ms));
+        assert!(
+            !script.wait(200).contains(&(number::ENABLE, Some(1))),
+            "{watchdog_ms} ms"
+        );
+        let fault = script.adapter.fault().unwrap();
+        assert!(matches!(fault.fault, Fault::DeadMan { .. }), "{fault}");
+    }
+    // No configuration at all: refused by default.
+    let mut script = Script::new();
+    for step in 0..3 {
+        script.wait(10);
+        script.hear(Packet::new(step, if step == 2 { b"a\0b\0c\0" } else { &[] }).unwrap());
+    }
+    for _ in 0..15 {
+        script.wait(100);
+        script.sip(|sip| sip.flags = Flags(0));
+    }
+    assert_eq!(script.adapter.state(), State::Disabled);
+    script.adapter.enable(at(script.now_ms));
+    assert!(matches!(
+        script.adapter.fault().unwrap().fault,
+        Fault::DeadMan {
+            found_ms: u16::MAX,
+            ..
+        }
+    ));
+}
+
+//= spec/drive.md#drive-15
+//= type=test
+//# An adapter MUST stop and wait for the operator when the drive reports a pressed stop button or that its motors went off.
+#[test]
+fn a_stop_button_holds_until_the_operator_enables_again() {
+    for (flags, fault) in [
+        (Flags::MOTORS | Flags::STOP_BUTTON, Fault::StopButton),
+        (0, Fault::MotorsOff),
+    ] {
+        let mut script = Script::driving();
+        script.decide(0.4, 0.2).unwrap();
+        script.wait(40);
+        assert!(script.said.contains(&(number::VEL, Some(400))));
+        script.sip(|sip| sip.flags = Flags(flags));
+        assert_eq!(script.adapter.fault().unwrap().fault, fault);
+        assert_eq!(script.wait(5)[0], (number::STOP, None));
+        for _ in 0..20 {
+            script.sip(|sip| sip.flags = Flags(0));
+            let _ = script.decide(0.4, 0.2);
+            let said = script.wait(40);
+            assert!(!said.contains(&(number::ENABLE, Some(1))));
+            assert!(
+                said.iter()
+                    .all(|(number, value)| *number != number::VEL || *value == Some(0))
+            );
+        }
+        assert_eq!(script.adapter.state(), State::Disabled);
+    }
+}
+
+#[test]
+fn a_bumper_is_an_emergency_stop() {
+    let mut script = Script::driving();
+    script.decide(0.4, 0.0).unwrap();
+    script.wait(40);
+    script.sip(|sip| sip.bumpers = Bumpers(1 << 9));
+    assert_eq!(script.wait(5), [(number::E_STOP, None)]);
+    assert_eq!(script.adapter.fault().unwrap().fault, Fault::Bumper);
+}
+
+#[test]
+fn a_keep_alive_carries_the_set_point() {
+    let mut script = Script::driving();
+    for _ in 0..40 {
+        script.wait(50);
+        script.sip(|_| {});
+    }
+    assert!(
+        !script.said.contains(&(number::PULSE, None)),
+        "{:?}",
+        script.said
+    );
+    assert!(
+        script
+            .said
+            .iter()
+            .filter(|said| **said == (number::VEL, Some(0)))
+            .count()
+            >= 2
+    );
+}
+
+#[test]
+fn commands_keep_their_distance() {
+    let mut script = Script::driving();
+    let mut last: Option<u64> = None;
+    for _ in 0..500 {
+        if script.now_ms % 40 == 0 {
+            let _ = script.decide(0.3, 0.1);
+            script.sip(|_| {});
+        }
+        if !script.wait(1).is_empty() {
+            assert!(last.is_none_or(|last| script.now_ms - last >= 5));
+            last = Some(script.now_ms);
+        }
+    }
+}
+
+/// Drives turns on a robot that skids, takes the true turn from outside, and gets its factor back.
+#[test]
+fn the_skid_factor_is_found_by_turning() {
+    for skid in [0.5, 0.73, 1.0] {
+        let mut turns = Vec::new();
+        for bytes in ["fafb06153b0f00243b", "fafb06151b0f00241b"] {
+            let mut wire = Wire::new(SeekurModel {
+                skid,
+                ..SeekurModel::default()
+            });
+            wire.open();
+            wire.say(bytes); // RVEL 15 and -15
+            let (mut counts, mut before) = (0_i64, None);
+            for _ in 0..250 {
+                for packet in wire.wait(100) {
+                    let heading = i64::from(Sip::decode(&packet).unwrap().heading);
+                    let step = before.map_or(0, |before: i64| heading - before);
+                    counts += (step + 2048).rem_euclid(4096) - 2048;
+                    before = Some(heading);
+                }
+                wire.say("fafb03000000");
+            }
+            let told = counts as f64 * std::f64::consts::TAU / 4096.0;
+            turns.push((told, wire.robot.truth().pose[2]));
+        }
+        let fit = skid_factor(&turns).unwrap();
+        assert!((fit.factor - skid).abs() < 0.002, "{skid}: {fit:?}");
+        assert_eq!(fit.turns, 2);
+    }
+    assert!(skid_factor(&[]).is_none());
+    assert!(skid_factor(&[(6.0, -4.0)]).is_none());
+    assert!(skid_factor(&[(6.0, 7.0)]).is_none());
+    assert!(skid_factor(&[(0.1, 0.1)]).is_none());
+    assert!(skid_factor(&[(6.0, f64::NAN)]).is_none());
+}
