@@ -13,6 +13,8 @@ pub(super) fn fail(requirement: &'static str, seen: String) -> Failure {
     Failure { requirement, seen }
 }
 
+/// Gaining more than this, m/s, is speeding up: 10 ms of the motor.
+const SPEEDS_UP: f64 = 5e-3;
 /// Slower than this counts as standing: m/s.
 const STANDS: f64 = 2e-3;
 
@@ -226,11 +228,11 @@ fn after(rig: &mut Rig, bench: &dyn Bench, name: &str, v: f64, turn: f64) -> Res
     };
     let since = rig.now.plus(grace);
     let speed = rig.robot.truth().twist[0];
-    for _ in 0..30 {
+    for _ in 0..300 {
         rig.drive.enable(rig.now);
-        rig.decide(v, turn, Duration::from_ms(100));
+        rig.decide(v, turn, Duration::from_ms(10));
         let now = rig.robot.truth().twist[0];
-        if now > speed + 0.03 {
+        if now > speed + SPEEDS_UP {
             return Err(fail(
                 "DRIVE-02",
                 format!("{name}: speeds up from {speed} to {now}"),
