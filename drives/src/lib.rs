@@ -29,6 +29,8 @@ pub mod governor;
 #[cfg(feature = "std")]
 pub mod link;
 #[cfg(feature = "std")]
+pub mod measure;
+#[cfg(feature = "std")]
 pub mod robots;
 pub mod seekur;
 pub mod uc;

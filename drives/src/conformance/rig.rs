@@ -174,6 +174,17 @@ impl Rig {
         }
     }
 
+    /// The host listens for `span` and says nothing.
+    pub fn listen(&mut self, span: Duration) {
+        for _ in 0..span.as_us() / 1000 {
+            self.now = self.now.plus(Duration::from_ms(1));
+            self.robot.step(self.now);
+            let bytes = self.robot.outgoing();
+            self.drive.receive(&bytes, self.now);
+            self.feedback = self.drive.feedback().or(self.feedback);
+        }
+    }
+
     /// Lets `span` pass with this decision in every period.
     pub fn decide(&mut self, linear: f64, turn: f64, span: Duration) {
         for _ in 0..span.as_us() / 1000 {
