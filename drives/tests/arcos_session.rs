@@ -468,7 +468,7 @@ fn commands_keep_their_distance() {
     let mut script = Script::driving();
     let mut last: Option<u64> = None;
     for _ in 0..500 {
-        if script.now_ms % 40 == 0 {
+        if script.now_ms.is_multiple_of(40) {
             let _ = script.decide(0.3, 0.1);
             script.sip(|_| {});
         }

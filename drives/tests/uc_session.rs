@@ -202,7 +202,7 @@ impl Script {
         for _ in 0..ms {
             self.now_ms += 1;
             let now = at(self.now_ms);
-            if self.now_ms % 10 == 0 {
+            if self.now_ms.is_multiple_of(10) {
                 let sum = crc16(&[0, 0]).to_le_bytes();
                 let data = format!("#2:0000{:02X}{:02X}\x03", sum[0], sum[1]);
                 self.adapter.receive(data.as_bytes(), now);

@@ -7,11 +7,14 @@
 mod bench;
 mod checks;
 mod hostile;
+mod ranges;
 mod rig;
+mod taps;
 mod twins;
 
-pub use bench::{Bench, CarBench, SeekurBench, Tap, Told};
+pub use bench::{Bench, CarBench, SeekurBench};
 pub use rig::Rig;
+pub use taps::{Tap, Told};
 pub use twins::{TWINS, Twin};
 
 /// A demand that was not met.
@@ -54,17 +57,17 @@ pub const CHECKS: &[Check] = &[
     Check {
         name: "saturation keeps the curvature",
         requirements: &["DRIVE-06"],
-        run: checks::saturation,
+        run: ranges::saturation,
     },
     Check {
         name: "sign and scale over the whole range",
         requirements: &["DRIVE-07", "DRIVE-08"],
-        run: checks::scale,
+        run: ranges::scale,
     },
     Check {
         name: "feedback has the sign and scale of the motion",
         requirements: &["DRIVE-07"],
-        run: checks::feedback,
+        run: ranges::feedback,
     },
     Check {
         name: "hostile bytes never move the robot",

@@ -5,7 +5,8 @@ use haltline::input::{Motion, Twist};
 use haltline::time::{Duration, Instant};
 use haltline::units::{AngularSpeed, Curvature, Speed};
 
-use super::bench::{Bench, Tap, Told};
+use super::bench::Bench;
+use super::taps::{Tap, Told};
 use super::twins::{self, Twin};
 use crate::drive::{Drive, DriveError, Feedback, State};
 use crate::emulator::Robot;

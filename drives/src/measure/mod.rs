@@ -151,7 +151,6 @@ pub fn run(robot: &Robot, platform: &mut dyn Platform, speed_mps: f64) -> Result
     );
     let silent_s = robot.values.host_death.watchdog_s;
     let mut runs = Runs::default();
-    let mut outcome = Outcome::default();
     for _ in 0..RUNS {
         platform.recover()?;
         braking(platform, speed_mps, &mut runs)?;
@@ -164,6 +163,12 @@ pub fn run(robot: &Robot, platform: &mut dyn Platform, speed_mps: f64) -> Result
         }
         silence(platform, speed_mps, silent_s, &mut runs)?;
     }
+    Ok(judge(robot, &runs, steered))
+}
+
+/// Figures of all runs against the robot file.
+fn judge(robot: &Robot, runs: &Runs, steered: bool) -> Outcome {
+    let mut outcome = Outcome::default();
     let limits = &robot.values.limits;
     let quiet = &robot.values.host_death;
     let wanted = [
@@ -213,7 +218,7 @@ pub fn run(robot: &Robot, platform: &mut dyn Platform, speed_mps: f64) -> Result
          odometry cannot see its own error"
             .to_owned(),
     );
-    Ok(outcome)
+    outcome
 }
 
 /// Up to speed, which gives the latency, and a set point of zero, which gives the brakes.

@@ -1,6 +1,6 @@
 //! The text protocol of the model car's control board (`ucboard`): bytes only.
 //!
-//! [`line`] finds messages in both directions, [`command`] is what a host says and how a board
+//! [`mod@line`] finds messages in both directions, [`command`] is what a host says and how a board
 //! reads it, [`reply`] what a board answers, [`daq`] the data it streams. Pure and total.
 #![deny(
     clippy::indexing_slicing,
