@@ -4,6 +4,7 @@
 //! bytes that can be cut, spoiled and listened to. What is judged is what a listener on the wire
 //! hears, not what the adapter says of itself.
 
+pub mod attack;
 mod bench;
 mod checks;
 mod hostile;
