@@ -27,6 +27,9 @@ pub struct Margin {
     pub turn_tolerance_radps: f64,
     /// Speed bound of the obstacles, m/s.
     pub obstacle_speed_mps: f64,
+    /// Least inflation that a point has once the robot has come near to it, m: what slowing down
+    /// and scoring look ahead with. Stopping in time respects each point's own inflation.
+    pub near_m: f64,
     /// Whether speed and turn rate may come to rest each by its own ramp.
     pub separate_ramps: bool,
 }
@@ -128,18 +131,22 @@ impl<'a> Hull<'a> {
         if situation.margin.separate_ramps && situation.limits.curvature_max_per_m.is_none() {
             let span = |rate: fn(Velocity) -> f64| {
                 let start = rate(velocity);
-                hull.motions().map(rate).fold((start, start), |(low, high), one| {
-                    (one.min(low), one.max(high))
-                })
+                hull.motions()
+                    .map(rate)
+                    .fold((start, start), |(low, high), one| {
+                        (one.min(low), one.max(high))
+                    })
             };
             let (slow, fast) = span(|one| one.linear_mps);
             let (right, left) = span(|one| one.angular_radps);
-            hull.corners = Some([(slow, right), (slow, left), (fast, right), (fast, left)].map(
-                |(linear_mps, angular_radps)| Velocity {
-                    linear_mps,
-                    angular_radps,
-                },
-            ));
+            hull.corners = Some(
+                [(slow, right), (slow, left), (fast, right), (fast, left)].map(
+                    |(linear_mps, angular_radps)| Velocity {
+                        linear_mps,
+                        angular_radps,
+                    },
+                ),
+            );
         }
         hull
     }
@@ -198,6 +205,7 @@ impl Margin {
             self.speed_tolerance_mps,
             self.turn_tolerance_radps,
             self.obstacle_speed_mps,
+            self.near_m,
         ]
         .iter()
         .all(|value| value.is_finite() && *value >= 0.0)
@@ -230,7 +238,10 @@ impl Margin {
             0.0
         };
         // Separate ramps: what the robot may turn on after v has come to rest.
-        let rate = situation.fastest_turn_radps().max(velocity.angular_radps.abs()) + slip;
+        let rate = situation
+            .fastest_turn_radps()
+            .max(velocity.angular_radps.abs())
+            + slip;
         let after_turn = if self.separate_ramps && limits.curvature_max_per_m.is_none() {
             rate * rate / (2.0 * limits.angular_braking_radps2)
         } else {
@@ -241,7 +252,8 @@ impl Margin {
             + rolling_back
             + (slip * time_s + after_turn) * corner
             + step * (1.0 + bend * corner) / 2.0;
-        let grown = slip * time_s + after_turn + (high - low) * (path / 2.0 + corner) + GUARD_CHORDS;
+        let grown =
+            slip * time_s + after_turn + (high - low) * (path / 2.0 + corner) + GUARD_CHORDS;
         Inflation {
             start_m,
             end_m: start_m + path * grown,

@@ -11,6 +11,11 @@ impl Situation<'_> {
         core::iter::once(self.velocity).chain(self.in_flight.iter().copied())
     }
 
+    /// How far ahead heading and clearance are judged at full speed, m.
+    pub(super) fn lookahead_m(&self) -> f64 {
+        self.tuning.lookahead_s * self.limits.speed_mps
+    }
+
     /// The largest speed among them, m/s.
     pub(super) fn fastest_mps(&self) -> f64 {
         let speed = |velocity: Velocity| velocity.linear_mps.abs();
@@ -73,6 +78,7 @@ impl Tuning {
             self.goal_near_m,
             self.object_near_m,
             self.creep_mps,
+            self.start_m,
             self.turn_first_rad,
             self.aligned_rad,
         ];

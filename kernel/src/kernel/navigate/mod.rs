@@ -6,6 +6,7 @@
 //! Nothing in here is trusted: a bug can stop the robot, or send it the wrong way, but
 //! every motion passes the same guard, window and stop logic as anybody else's.
 
+mod pilot;
 mod progress;
 mod proposal;
 mod route;
@@ -13,17 +14,17 @@ mod route;
 pub use progress::{Blocked, Obstruction, Progress, ProgressRules};
 pub use route::{Destination, Route, Via};
 
-use super::{Kernel, Outcome, Tick};
+use super::Kernel;
 use crate::checked::ConfigError;
 use crate::config::Config;
 use crate::decision::{Action, Decision, Reason};
-use crate::dwa::{self, Plan, Tuning};
+use crate::dwa::{Plan, Tuning};
 use crate::grid::{GridError, GridRules, RollingGrid};
 use crate::guard::Verdict;
 use crate::input::{Inputs, Reading};
 use crate::stop::Mode;
 use crate::time::{Duration, Instant};
-use crate::window;
+use pilot::{Attempt, Pilot};
 use progress::Watch;
 use route::Course;
 
@@ -60,6 +61,10 @@ pub struct Navigation {
     pub progress: Progress,
     /// Commands of the planner that the guard refused in this tick; zero in nominal operation.
     pub refused: u8,
+    /// The guard's verdict on the first of them.
+    pub refusal: Option<Verdict>,
+    /// What the planner proposed, best first; `None` where it was not asked.
+    pub plan: Option<Plan>,
 }
 
 /// A kernel that drives to goals, with a planning grid of `W` × `H` cells around the robot.
@@ -77,13 +82,6 @@ pub struct Navigator<const S: usize, const B: usize, const M: usize, const W: us
     watch: Watch,
     /// When a latched stop was last released; older routes are void.
     restarted: Instant,
-}
-
-/// What came of one tick's plan.
-struct Attempt {
-    outcome: Outcome,
-    progress: Progress,
-    refused: u8,
 }
 
 impl<const S: usize, const B: usize, const M: usize, const W: usize, const H: usize>
@@ -136,10 +134,12 @@ impl<const S: usize, const B: usize, const M: usize, const W: usize, const H: us
                 decision: self.kernel.decide(&tick, Kernel::drive),
                 progress: Progress::Idle,
                 refused: 0,
+                refusal: None,
+                plan: None,
             };
         };
-        let refusal = self.refusal(inputs, route, tick.now);
-        let (mut progress, mut refused) = (Progress::Held, 0);
+        let objection = self.objection(inputs, route, tick.now);
+        let mut attempt = Attempt::held();
         let Self {
             kernel,
             planning,
@@ -148,7 +148,7 @@ impl<const S: usize, const B: usize, const M: usize, const W: usize, const H: us
             ..
         } = self;
         let decision = kernel.decide(&tick, |kernel, tick| {
-            if let Some(reason) = refusal {
+            if let Some(reason) = objection {
                 return kernel.braking(Action::Brake, reason, tick.elapsed);
             }
             let mut pilot = Pilot {
@@ -157,22 +157,24 @@ impl<const S: usize, const B: usize, const M: usize, const W: usize, const H: us
                 course,
                 watch,
             };
-            let attempt = pilot.attempt(route, tick);
-            (progress, refused) = (attempt.progress, attempt.refused);
-            attempt.outcome
+            let outcome;
+            (outcome, attempt) = pilot.drive(route, tick);
+            outcome
         });
-        if progress == Progress::Held {
+        if attempt.progress == Progress::Held {
             watch.pause();
         }
         Navigation {
             decision,
-            progress,
-            refused,
+            progress: attempt.progress,
+            refused: attempt.refused,
+            refusal: attempt.refusal,
+            plan: attempt.plan,
         }
     }
 
     /// Why `route` cannot be followed, if it cannot.
-    fn refusal(&self, inputs: &Inputs<'_>, route: &Route<'_>, now: Instant) -> Option<Reason> {
+    fn objection(&self, inputs: &Inputs<'_>, route: &Route<'_>, now: Instant) -> Option<Reason> {
         if inputs.command != Reading::Absent || !route.is_valid() {
             return Some(Reason::CommandMalformed);
         }
@@ -227,153 +229,5 @@ impl<const S: usize, const B: usize, const M: usize, const W: usize, const H: us
     #[must_use]
     pub const fn grid(&self) -> &RollingGrid<W, H> {
         &self.grid
-    }
-}
-
-/// One tick's work on a route.
-struct Pilot<'a, const S: usize, const B: usize, const M: usize> {
-    kernel: &'a mut Kernel<S, B, M>,
-    planning: &'a Planning,
-    course: &'a mut Option<Course>,
-    watch: &'a mut Watch,
-}
-
-impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
-    /// Plans towards the next target and has the candidates judged one after the other.
-    fn attempt(&mut self, route: &Route<'_>, tick: &Tick) -> Attempt {
-        let Some(odometry) = self.kernel.track.newest().copied() else {
-            let outcome = self
-                .kernel
-                .braking(Action::Brake, Reason::OdometryMissing, tick.elapsed);
-            return Attempt::of(outcome, Progress::Held);
-        };
-        let course = Course::of(*self.course, route, &odometry.pose);
-        if self.course.is_none_or(|before| before.id != course.id) {
-            *self.watch = Watch::default();
-        }
-        *self.course = Some(course);
-        let sight = course.sight(route, &odometry.pose);
-        if self
-            .watch
-            .has_given_up(&self.planning.progress, course.next, sight.distance_m)
-        {
-            return self.blocked(tick, Obstruction::NoProgress, None);
-        }
-        let plan = self.plan(route, &odometry, tick, sight);
-        match plan.outcome {
-            dwa::Outcome::Moving => self.dispose(&plan, &odometry, tick, course.next),
-            dwa::Outcome::Arrived => {
-                self.watch.pause();
-                let mut outcome = self
-                    .kernel
-                    .braking(Action::Pass, Reason::None, tick.elapsed);
-                outcome.factor_permille = 1000;
-                Attempt::of(outcome, Progress::Arrived)
-            }
-            // Rolling where a turn is wanted, or backwards: come to rest first.
-            dwa::Outcome::Unsuitable => {
-                self.watch.pause();
-                let mut outcome = self
-                    .kernel
-                    .braking(Action::Pass, Reason::None, tick.elapsed);
-                outcome.factor_permille = 1000;
-                Attempt::of(outcome, Progress::Driving { next: course.next })
-            }
-            dwa::Outcome::Blocked(point) => {
-                let reason = if self.is_occupied(route, &odometry.pose) {
-                    Obstruction::GoalOccupied
-                } else {
-                    Obstruction::NoWay
-                };
-                self.blocked(tick, reason, point.and_then(progress::body_point))
-            }
-            dwa::Outcome::Malformed => {
-                let outcome =
-                    self.kernel
-                        .braking(Action::Brake, Reason::CommandMalformed, tick.elapsed);
-                Attempt::of(outcome, Progress::Held)
-            }
-        }
-    }
-
-    /// Takes the first candidate that window and guard accept.
-    fn dispose(
-        &mut self,
-        plan: &Plan,
-        odometry: &crate::input::Odometry,
-        tick: &Tick,
-        next: usize,
-    ) -> Attempt {
-        let step = tick.elapsed.min(self.kernel.config.config().timing.period);
-        let reference = self.kernel.pipeline.last();
-        let mut first: Option<Verdict> = None;
-        let mut refused = 0_u8;
-        for (rank, candidate) in plan.candidates().iter().enumerate() {
-            let config = self.kernel.config.config();
-            let Some(vertex) = proposal::vertex(config, candidate.velocity) else {
-                continue;
-            };
-            if !window::admissible(config, reference, vertex, step) {
-                continue;
-            }
-            let verdict = self.kernel.judge(odometry, vertex, tick.now);
-            if verdict.refusal.is_none() {
-                self.watch.moved(tick.elapsed);
-                // A candidate that is not the planner's first choice is what the guard leaves.
-                let mut outcome = self.kernel.accepted(vertex, 1000, false, verdict);
-                if rank > 0 {
-                    (outcome.action, outcome.reason) = (Action::Slow, Reason::GuardLimited);
-                }
-                return Attempt {
-                    outcome,
-                    progress: Progress::Driving { next },
-                    refused,
-                };
-            }
-            refused = refused.saturating_add(1);
-            first.get_or_insert(verdict);
-        }
-        let mut attempt = match first.and_then(|verdict| Some((verdict, verdict.refusal?))) {
-            Some((verdict, refusal)) => {
-                self.blocked(tick, Obstruction::Guard(refusal), verdict.point)
-            }
-            None => self.blocked(tick, Obstruction::NoWay, None),
-        };
-        attempt.outcome.verdict = first;
-        attempt.refused = refused;
-        attempt
-    }
-
-    /// Brakes and says why.
-    fn blocked(
-        &mut self,
-        tick: &Tick,
-        reason: Obstruction,
-        point: Option<crate::guard::BodyPoint>,
-    ) -> Attempt {
-        let since = self.watch.blocked(tick.now);
-        let cause = match reason {
-            Obstruction::Guard(_) => Reason::GuardBlocked,
-            _ => Reason::PathBlocked,
-        };
-        let outcome = self.kernel.braking(Action::Brake, cause, tick.elapsed);
-        Attempt::of(
-            outcome,
-            Progress::Blocked(Blocked {
-                reason,
-                point,
-                since,
-            }),
-        )
-    }
-}
-
-impl Attempt {
-    const fn of(outcome: Outcome, progress: Progress) -> Self {
-        Self {
-            outcome,
-            progress,
-            refused: 0,
-        }
     }
 }

@@ -3,8 +3,8 @@
 //! The margins follow the guard's, so that it does not refuse what the planner proposes: a
 //! point carries its own inflation, and the outline the terms of the motion ([`crate::dwa`]).
 
+use super::pilot::Pilot;
 use super::route::{Route, Sight, radians};
-use super::{Pilot, Tick};
 use crate::checked::KernelConfig;
 use crate::config::{Config, Kinematics};
 use crate::convert::{self, Round};
@@ -12,6 +12,7 @@ use crate::dwa::{self, Arrival, Footprint, Goal, Limits, Margin, Obstacle, Plan,
 use crate::guard::check::CloudPoint;
 use crate::guard::hull::{VERTICES_MAX, Vertex};
 use crate::input::{Motion, Odometry, Pose, Twist};
+use crate::kernel::Tick;
 use crate::time::Duration;
 use crate::units::{BinaryAngle, Curvature, Length};
 use crate::window;
@@ -21,6 +22,8 @@ use core::f64::consts::PI;
 const MICRO: f64 = 1e-6;
 /// What the guard adds for rounding, m.
 const GUARD_ROUNDING_M: f64 = 0.003;
+/// What may hide between two beams when the robot is near, m.
+const NEAR_GAP_M: f64 = 0.002;
 /// Kept between the planner's outline and the critical zone, m.
 const ZONE_SLACK_M: f64 = 0.002;
 /// A joined pair of returns is filled up with points this far apart, m.
@@ -53,7 +56,16 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
             in_flight: in_flight.get(..count).unwrap_or(&[]),
             goal: goal(route, odometry, sight),
         };
-        dwa::plan(&situation, self.obstacles())
+        // A point in the critical zone stops the robot, whatever is known of its error.
+        let zone_m = metres(config.config().zone.side) + ZONE_SLACK_M - margin.fixed_m;
+        dwa::plan(&situation, self.obstacles(zone_m))
+    }
+
+    /// How far ahead on the route to steer for: by speed, and at least by the outline's corner.
+    pub(super) fn ahead_m(&self) -> f64 {
+        let speed = velocity(self.kernel.pipeline.last().twist).linear_mps;
+        let corner = Footprint::of(self.kernel.config.config()).corner_m();
+        (speed * self.planning.tuning.lookahead_s).max(corner)
     }
 
     /// The measured twist and every command that may still be executing.
@@ -72,9 +84,11 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
     }
 
     /// Every known point with its inflation, and points along what two neighbours bound.
-    fn obstacles(&self) -> impl Iterator<Item = Obstacle> {
+    ///
+    /// No inflation is less than `least_m`.
+    fn obstacles(&self, least_m: f64) -> impl Iterator<Item = Obstacle> {
         let clouds = self.kernel.memory.clouds();
-        clouds.flat_map(|cloud| {
+        let all = clouds.flat_map(|cloud| {
             let next = cloud.iter().skip(1).map(Some);
             cloud
                 .iter()
@@ -82,17 +96,17 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
                 .flat_map(|(point, next)| {
                     core::iter::once(Obstacle::from(*point)).chain(between(point, next))
                 })
+        });
+        all.map(move |obstacle| Obstacle {
+            inflation_m: obstacle.inflation_m.max(least_m),
+            ..obstacle
         })
     }
 
     /// Whether a known point lies so near to the destination that no pose within its tolerance
     /// is free, whatever the heading.
     pub(super) fn is_occupied(&self, route: &Route<'_>, pose: &Pose) -> bool {
-        let course = super::Course {
-            id: route.id,
-            next: route.via.len(),
-        };
-        let [x, y] = course.sight(route, pose).position;
+        let [x, y] = route.goal_seen(pose);
         let inscribed = Footprint::of(self.kernel.config.config()).inscribed_m();
         let tolerance = f64::from(route.goal.tolerance.as_um()) * MICRO;
         let mut points = self.kernel.memory.clouds().flatten();
@@ -200,14 +214,12 @@ fn limits<const S: usize>(config: &KernelConfig<S>, age: Duration, elapsed: Dura
 
 fn margin<const S: usize>(config: &KernelConfig<S>) -> Margin {
     let plain = config.config();
-    let guard = metres(plain.tolerances.tracking) + GUARD_ROUNDING_M;
-    // A point's own inflation holds at least the sensor's error; the zone asks for none.
-    let zone = metres(plain.zone.side) + ZONE_SLACK_M - sensor_m(config);
     Margin {
-        fixed_m: guard.max(zone),
+        fixed_m: metres(plain.tolerances.tracking) + GUARD_ROUNDING_M,
         speed_tolerance_mps: f64::from(plain.tolerances.speed.as_um_per_s()) * MICRO,
         turn_tolerance_radps: f64::from(plain.tolerances.angular_speed.as_urad_per_s()) * MICRO,
         obstacle_speed_mps: f64::from(plain.obstacle_speed.as_um_per_s()) * MICRO,
+        near_m: sensor_m(config) + NEAR_GAP_M,
         separate_ramps: config.tube().dynamics.separate_ramps,
     }
 }
