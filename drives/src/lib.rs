@@ -33,4 +33,6 @@ pub mod measure;
 #[cfg(feature = "std")]
 pub mod robots;
 pub mod seekur;
+#[cfg(feature = "std")]
+pub mod trace;
 pub mod uc;

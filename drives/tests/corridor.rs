@@ -55,7 +55,7 @@ fn run(course: &Course) -> String {
     let file = file.to_str().unwrap();
     let mut emulator = Emulator::start(course.robot, course.port, &["--robot", file]);
     let log = log(&format!("{}-{tag}", course.robot));
-    let options = ["--robot", file, "--speed", course.speed];
+    let options = ["--robot", file, "--speed", course.speed, "--persist"];
     let mut driver = Driver::start(course.robot, &emulator, &options, &log);
     let place = format!("{} over {}", course.robot, course.port);
     let past = emulator.until(Duration::from_secs(60), |r| {

@@ -27,19 +27,23 @@ struct Case {
 }
 
 fn seekur(port: &'static str) -> Case {
+    seekur_with(port, "0.5", 0.5)
+}
+
+fn seekur_with(port: &'static str, watchdog: &str, watchdog_s: f64) -> Case {
     Case {
         robot: "seekur-jr",
         port,
         file: robot_file(
             "seekur_jr",
-            &format!("death-{}", &port[..3]),
+            &format!("death-{}-{watchdog}", &port[..3]),
             &[
-                ("watchdog_s", "0.5"),
+                ("watchdog_s", watchdog),
                 ("cover_host_death", "true"),
                 ("jitter_s", "0.020"),
             ],
         ),
-        watchdog_s: 0.5,
+        watchdog_s,
         silent_braking: 0.3,
         speed: "0.5",
         ahead: "3.0",
@@ -47,15 +51,23 @@ fn seekur(port: &'static str) -> Case {
 }
 
 fn car() -> Case {
+    car_with("0.2", 0.2)
+}
+
+fn car_with(watchdog: &str, watchdog_s: f64) -> Case {
     Case {
         robot: "pses-car",
         port: "tcp:127.0.0.1:0",
         file: robot_file(
             "pses_car",
-            "death",
-            &[("cover_host_death", "true"), ("jitter_s", "0.015")],
+            &format!("death-{watchdog}"),
+            &[
+                ("watchdog_s", watchdog),
+                ("cover_host_death", "true"),
+                ("jitter_s", "0.015"),
+            ],
         ),
-        watchdog_s: 0.2,
+        watchdog_s,
         silent_braking: 0.3,
         speed: "0.4",
         ahead: "2.6",
@@ -67,33 +79,54 @@ fn stands(report: &Report) -> bool {
 }
 
 /// Drives, waits until the robot is fast and then `delay`, and hands over both.
+///
+/// A machine that is busy with other things may call the loop so late that the robot is stopped
+/// again and again. That is no failure of what is tested here, so it may try five times.
 fn moving(case: &Case, tag: &str, delay: Duration, more: &[&str]) -> (Emulator, Driver, PathBuf) {
-    let file = case.file.to_str().unwrap();
-    let options = [&["--robot", file, "--hall", case.ahead], more].concat();
-    let mut emulator = Emulator::start(case.robot, case.port, &options);
     let log = log(&format!("{}-{tag}", case.robot));
-    let options = ["--robot", file, "--speed", case.speed, "--straight"];
-    let driver = Driver::start(case.robot, &emulator, &options, &log);
-    let fast = emulator.until(Duration::from_secs(20), |r| r.truth.twist[0] > 0.15);
-    assert!(fast.is_some(), "{tag}: never moves:\n{}", tail(&log));
-    let from = fast.unwrap().time_s;
-    emulator.until(Duration::from_secs(5), |r| {
-        r.time_s - from > delay.as_secs_f64()
-    });
-    (emulator, driver, log)
+    for _ in 0..5 {
+        let file = case.file.to_str().unwrap();
+        let options = [&["--robot", file, "--hall", case.ahead], more].concat();
+        let mut emulator = Emulator::start(case.robot, case.port, &options);
+        let options = ["--robot", file, "--speed", case.speed, "--straight"];
+        let driver = Driver::start(case.robot, &emulator, &options, &log);
+        let fast = emulator.until(Duration::from_secs(15), |r| r.truth.twist[0] > 0.15);
+        if let Some(fast) = fast {
+            let end_s = fast.time_s + delay.as_secs_f64();
+            emulator.until(Duration::from_secs(5), |r| r.time_s > end_s);
+            return (emulator, driver, log);
+        }
+    }
+    panic!("{tag}: never moves:\n{}", tail(&log));
+}
+
+/// One test at a time: each needs the rhythm of a machine that is not too busy.
+static MACHINE: std::sync::Mutex<()> = std::sync::Mutex::new(());
+
+fn machine() -> std::sync::MutexGuard<'static, ()> {
+    MACHINE
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
 /// What happened after the host fell silent.
 struct Silence {
     rest_s: f64,
     bound_s: f64,
+    /// Way since the last word, and the most the contract allows.
+    way_m: f64,
+    most_m: f64,
     contact: bool,
 }
 
 /// Follows the robot until it rests, or until it should long have.
 fn silence(case: &Case, emulator: &mut Emulator) -> Option<Silence> {
     emulator.skip();
-    let mut fastest = emulator.newest.unwrap().heard_twist[0].abs();
+    let last = emulator.newest.unwrap();
+    let mut fastest = last.heard_twist[0].abs().max(last.truth.twist[0].abs());
+    // Where it was when it last heard something.
+    let before_m = last.unheard_s * last.truth.twist[0].abs();
+    let place = last.truth.pose;
     loop {
         let report = emulator.report();
         if report.unheard_s > 0.03 {
@@ -101,9 +134,13 @@ fn silence(case: &Case, emulator: &mut Emulator) -> Option<Silence> {
         }
         let bound_s = case.watchdog_s + fastest / case.silent_braking + SLACK_S;
         if stands(&report) {
+            let [x, y, _] = report.truth.pose;
+            let rolled = fastest * fastest / (2.0 * case.silent_braking);
             return Some(Silence {
                 rest_s: report.unheard_s,
                 bound_s,
+                way_m: (x - place[0]).hypot(y - place[1]) + before_m,
+                most_m: fastest * (case.watchdog_s + SLACK_S) + rolled,
                 contact: report.contact,
             });
         }
@@ -113,10 +150,10 @@ fn silence(case: &Case, emulator: &mut Emulator) -> Option<Silence> {
     }
 }
 
-fn kill_many(case: &Case) -> (usize, f64) {
+fn kill_many(case: &Case) -> (usize, f64, f64) {
     let (next, worst) = (
         AtomicUsize::new(0),
-        std::sync::Mutex::new((0_usize, 0.0_f64)),
+        std::sync::Mutex::new((0_usize, 0.0_f64, 0.0_f64)),
     );
     std::thread::scope(|scope| {
         for _ in 0..WORKERS {
@@ -140,9 +177,16 @@ fn kill_many(case: &Case) -> (usize, f64) {
                         seen.rest_s,
                         seen.bound_s
                     );
+                    assert!(
+                        seen.way_m <= seen.most_m,
+                        "{tag}: rolls {} m, the contract says {} m",
+                        seen.way_m,
+                        seen.most_m
+                    );
                     let mut worst = worst.lock().unwrap();
                     worst.0 += usize::from(!stands(&at_kill));
                     worst.1 = worst.1.max(seen.rest_s / seen.bound_s);
+                    worst.2 = worst.2.max(seen.way_m / seen.most_m);
                 }
             });
         }
@@ -155,12 +199,14 @@ fn kill_many(case: &Case) -> (usize, f64) {
 //# When the controlling process is killed, the robot MUST rest no later than its dead-man time plus `v / b_silent` after it last heard a set point.
 #[test]
 fn a_hundred_kills_in_motion_end_at_rest_in_time_and_without_contact() {
+    let _machine = machine();
     for case in [seekur("tcp:127.0.0.1:0"), car()] {
-        let (in_motion, worst) = kill_many(&case);
+        let (in_motion, worst, way) = kill_many(&case);
         println!(
-            "{}: {in_motion} of {KILLS} kills in motion, latest rest at {:.0} % of the bound",
+            "{}: {in_motion} of {KILLS} kills in motion, latest rest at {:.0} % and longest way at {:.0} % of the bound",
             case.robot,
-            worst * 100.0
+            worst * 100.0,
+            way * 100.0
         );
         // With the guard covering the host's death a robot may already stand before the wall.
         assert!(
@@ -173,6 +219,7 @@ fn a_hundred_kills_in_motion_end_at_rest_in_time_and_without_contact() {
 /// The false twin: a robot whose watchdog does not stop it.
 #[test]
 fn a_robot_without_watchdog_is_caught() {
+    let _machine = machine();
     let case = seekur("pty");
     // The adapter refuses to enable a robot that tells that it has none; this one lies.
     let (mut emulator, mut driver, _) =
@@ -188,6 +235,7 @@ fn a_robot_without_watchdog_is_caught() {
 //# An adapter MUST read back the dead-man time of its drive and refuse to enable it when it is off or longer than the robot file says.
 #[test]
 fn a_robot_that_tells_a_longer_watchdog_is_not_driven() {
+    let _machine = machine();
     let case = seekur("pty");
     let file = case.file.to_str().unwrap();
     let options = ["--robot", file, "--hall", "4", "--watchdog-s", "2"];
@@ -215,7 +263,9 @@ fn a_robot_that_tells_a_longer_watchdog_is_not_driven() {
 //# Ctrl-C, a request to terminate and a panic MUST end the drive with a ramp to rest on the wire.
 #[test]
 fn signals_and_panics_end_in_a_ramp_and_a_good_bye() {
-    for case in [seekur("pty"), car()] {
+    let _machine = machine();
+    // Long enough that a busy machine does not end them by the watchdog instead.
+    for case in [seekur_with("pty", "1.5", 1.5), car_with("1.0", 1.0)] {
         for way in ["INT", "TERM", "panic"] {
             let tag = format!("ends-by-{way}");
             let (mut emulator, mut driver, log) = if way == "panic" {

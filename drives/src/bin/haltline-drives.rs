@@ -1,23 +1,27 @@
 //! `haltline-drives emulate|drive`: an emulated robot, or the loop that drives one.
 
-use std::io::{self, Write as _};
+use std::fs::File;
+use std::io::{self, BufWriter, Write as _};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use haltline_drives::clock::Clock;
 use haltline_drives::control::{Control, Ending, Operator};
+use haltline_drives::drive::State;
 use haltline_drives::emulator::process::{Process, print};
 use haltline_drives::eye::Eye;
 use haltline_drives::link;
 use haltline_drives::robots::{Kind, corridor, course, follow};
+use haltline_drives::trace::Trace;
 use haltline_robots::Robot;
 
 const USAGE: &str = "\
 usage: haltline-drives emulate seekur-jr|pses-car [--port pty|tcp:ADDRESS] [--robot FILE]
                        [--hall AHEAD] [--watchdog-s S] [--ignore-watchdog]
        haltline-drives drive seekur-jr|pses-car --port PATH|tcp:ADDRESS --scan ADDRESS
-                       [--robot FILE] [--speed MPS] [--straight] [--for S] [--panic-moving]";
+                       [--robot FILE] [--speed MPS] [--straight] [--for S] [--trace FILE]
+                       [--persist] [--panic-moving]";
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -108,6 +112,10 @@ fn drive(words: &[String]) -> io::Result<()> {
     let scan = option(words, "--scan").ok_or_else(|| bad(USAGE))?;
     let mount = file.values.scanners.first().cloned();
     let mount = mount.ok_or_else(|| bad("the robot file has no scanner"))?;
+    let mut trace = match option(words, "--trace") {
+        Some(path) => Some(Trace::new(BufWriter::new(File::create(path)?), &mount)?),
+        None => None,
+    };
     let eye = Eye::new(Box::new(link::tcp(scan)?), mount);
     let clock = Clock::default();
     let adapter = kind.adapter(&file, std::process::id(), clock.now());
@@ -118,6 +126,7 @@ fn drive(words: &[String]) -> io::Result<()> {
     let speed = number(words, "--speed")?.unwrap_or(0.5);
     let end_s = number(words, "--for")?.unwrap_or(f64::INFINITY);
     let panics = words.iter().any(|word| word == "--panic-moving");
+    let persists = words.iter().any(|word| word == "--persist");
     let straight = words.iter().any(|word| word == "--straight");
     let points = course(kind).1;
     let start = clock.now();
@@ -148,6 +157,14 @@ fn drive(words: &[String]) -> io::Result<()> {
         let scan = tick
             .scan_fault
             .map_or(String::new(), |fault| format!(" ({fault})"));
+        if let Some(Err(error)) = trace.as_mut().map(|trace| trace.tick(tick)) {
+            let _ = writeln!(io::stderr(), "the trace ends here: {error}");
+            trace = None;
+        }
+        if persists && tick.state == State::Disabled {
+            // An operator who switches the motors on again, whatever switched them off.
+            operator.reset.store(true, Ordering::Relaxed);
+        }
         // Whoever reads may have gone; the robot is more important.
         let _ = writeln!(io::stdout(), "{line}{fault}{scan}");
     });

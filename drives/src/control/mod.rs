@@ -98,7 +98,7 @@ impl Control {
         &mut self,
         operator: &Operator,
         mut propose: impl FnMut(&View) -> Option<[f64; 2]>,
-        mut observe: impl FnMut(&Tick),
+        mut observe: impl FnMut(&Tick<'_>),
     ) -> Ending {
         let driven = catch_unwind(AssertUnwindSafe(|| {
             self.ticks(operator, &mut propose, &mut observe)
@@ -117,7 +117,7 @@ impl Control {
         &mut self,
         operator: &Operator,
         propose: &mut dyn FnMut(&View) -> Option<[f64; 2]>,
-        observe: &mut dyn FnMut(&Tick),
+        observe: &mut dyn FnMut(&Tick<'_>),
     ) -> Ending {
         let timing = &self.robot.config.timing;
         let (period, most) = (timing.period, timing.period.plus(timing.jitter));
@@ -143,12 +143,18 @@ impl Control {
             let Some(wanted) = propose(&view) else {
                 return Ending::Finished;
             };
-            observe(&self.tick(operator, wanted, now));
+            self.tick(operator, wanted, now, observe);
         }
         Ending::Asked
     }
 
-    fn tick(&mut self, operator: &Operator, wanted: [f64; 2], now: Instant) -> Tick {
+    fn tick(
+        &mut self,
+        operator: &Operator,
+        wanted: [f64; 2],
+        now: Instant,
+        observe: &mut dyn FnMut(&Tick<'_>),
+    ) {
         self.account.ticks += 1;
         self.resetting |= operator.reset.swap(false, Ordering::Relaxed);
         if self.resetting && self.drive.state() == State::Disabled {
@@ -164,7 +170,8 @@ impl Control {
         self.serve(now);
         let fault = refused.or(self.fault.take());
         self.account.faults += u64::from(fault.is_some());
-        Tick {
+        observe(&Tick {
+            inputs: &inputs,
             now,
             decision,
             state: self.drive.state(),
@@ -172,7 +179,7 @@ impl Control {
             fault,
             scan_fault: self.eye.fault(),
             account: self.account,
-        }
+        });
     }
 
     fn inputs(&mut self, operator: &Operator, [v, turn]: [f64; 2], now: Instant) -> TickInputs {

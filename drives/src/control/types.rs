@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use haltline::decision::Decision;
 use haltline::time::Instant;
+use haltline_scenarios::controller::TickInputs;
 
 use crate::drive::{DriveError, Feedback, State};
 use crate::eye::ScanFault;
@@ -24,7 +25,9 @@ pub struct View {
 
 /// One tick, for status lines and traces.
 #[derive(Clone, Copy, Debug)]
-pub struct Tick {
+pub struct Tick<'a> {
+    /// What the kernel was given.
+    pub inputs: &'a TickInputs,
     /// When it was.
     pub now: Instant,
     /// What the kernel decided.
