@@ -55,7 +55,16 @@ fn run(course: &Course) -> String {
     let file = file.to_str().unwrap();
     let mut emulator = Emulator::start(course.robot, course.port, &["--robot", file]);
     let log = log(&format!("{}-{tag}", course.robot));
-    let options = ["--robot", file, "--speed", course.speed, "--persist"];
+    let trace = log.with_extension("csv");
+    let options = [
+        "--robot",
+        file,
+        "--speed",
+        course.speed,
+        "--persist",
+        "--trace",
+        trace.to_str().unwrap(),
+    ];
     let mut driver = Driver::start(course.robot, &emulator, &options, &log);
     let place = format!("{} over {}", course.robot, course.port);
     let past = emulator.until(Duration::from_secs(60), |r| {
@@ -81,10 +90,35 @@ fn run(course: &Course) -> String {
     );
     let end = emulator.report();
     assert!(end.clearance_m > 0.0);
+    readable(&trace, end.truth.pose[0]);
     format!(
         "{place}: {:.2} m driven, least clearance {:.3} m",
         end.truth.pose[0], end.clearance_m
     )
+}
+
+/// The trace has whole rows in order of time, and its increments add up to the way.
+fn readable(trace: &std::path::Path, x_m: f64) {
+    let text = std::fs::read_to_string(trace).unwrap();
+    let mut lines = text.lines();
+    let header = lines.next().unwrap();
+    let beams: usize = header.split(' ').nth(2).unwrap().parse().unwrap();
+    assert!(lines.next().unwrap().starts_with("# t_s,dx_m"));
+    let (mut before, mut pose) = (-1.0, [0.0_f64; 3]);
+    for line in lines {
+        let fields: Vec<f64> = line
+            .split(',')
+            .map(|field| field.parse().unwrap())
+            .collect();
+        assert_eq!(fields.len(), beams + 4);
+        assert!(fields[0] > before);
+        before = fields[0];
+        let (sin, cos) = pose[2].sin_cos();
+        pose[0] += cos * fields[1] - sin * fields[2];
+        pose[1] += sin * fields[1] + cos * fields[2];
+        pose[2] += fields[3];
+    }
+    assert!((pose[0] - x_m).abs() < 0.05 * x_m, "{} of {x_m} m", pose[0]);
 }
 
 #[test]

@@ -165,3 +165,9 @@ fn wheel_angles_of_curvatures_are_odd_and_saturate() {
     assert_eq!(wheel_angle(i32::MAX, 0.25), 15_689);
     assert_eq!(wheel_angle(i32::MIN, 0.25), -15_689);
 }
+
+#[test]
+fn the_enumeration_of_the_certificate_says_the_same() {
+    let said = haltline_drives::conformance::speed_and_steering().unwrap();
+    assert!(said.contains("65536"));
+}

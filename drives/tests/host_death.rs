@@ -9,7 +9,7 @@ use std::time::Duration;
 use common::{Driver, Emulator, log, robot_file, tail};
 use haltline_drives::emulator::process::Report;
 
-/// Kills of each robot.
+/// Kills in motion of each robot; one that stands already before the wall does not count.
 const KILLS: usize = 50;
 /// At a time; the machine has to keep the rhythm of all of them.
 const WORKERS: usize = 5;
@@ -160,7 +160,7 @@ fn kill_many(case: &Case) -> (usize, f64, f64) {
             scope.spawn(|| {
                 loop {
                     let round = next.fetch_add(1, Ordering::Relaxed);
-                    if round >= KILLS {
+                    if worst.lock().unwrap().0 >= KILLS {
                         return;
                     }
                     let delay = Duration::from_millis((round as u64 * 37) % 900);
@@ -203,16 +203,12 @@ fn a_hundred_kills_in_motion_end_at_rest_in_time_and_without_contact() {
     for case in [seekur("tcp:127.0.0.1:0"), car()] {
         let (in_motion, worst, way) = kill_many(&case);
         println!(
-            "{}: {in_motion} of {KILLS} kills in motion, latest rest at {:.0} % and longest way at {:.0} % of the bound",
+            "{}: {in_motion} kills in motion: latest rest at {:.0} % and longest way at {:.0} % of the bound",
             case.robot,
             worst * 100.0,
             way * 100.0
         );
-        // With the guard covering the host's death a robot may already stand before the wall.
-        assert!(
-            in_motion * 10 >= KILLS * 9,
-            "only {in_motion} of {KILLS} kills in motion"
-        );
+        assert!(in_motion >= KILLS);
     }
 }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use haltline_drives::clock::Clock;
-use haltline_drives::control::{Control, Ending, Operator};
+use haltline_drives::control::{Control, Ending, Operator, shield};
 use haltline_drives::drive::State;
 use haltline_drives::emulator::process::{Process, print};
 use haltline_drives::eye::Eye;
@@ -120,7 +120,7 @@ fn drive(words: &[String]) -> io::Result<()> {
     let clock = Clock::default();
     let adapter = kind.adapter(&file, std::process::id(), clock.now());
     let opener = Box::new(move || link::open(&port, kind.baud()));
-    let mut control = Control::new(&file, adapter, opener, eye, clock)?;
+    let mut control = Control::new(&file, shield(&file)?, adapter, opener, eye, clock)?;
     let operator = Operator::with_signals()?;
     operator.reset.store(true, Ordering::Relaxed);
     let speed = number(words, "--speed")?.unwrap_or(0.5);

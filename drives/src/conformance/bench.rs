@@ -30,6 +30,8 @@ pub trait Bench {
     fn notices_restart(&self) -> Duration;
     /// Sure decelerations, m/s² and rad/s².
     fn braking(&self) -> [f64; 2];
+    /// Deceleration after the watchdog, m/s².
+    fn silent_braking(&self) -> f64;
     /// Largest forward and reverse speed and turn rate or curvature.
     fn limits(&self) -> [f64; 3];
     /// Largest error of one set point on the wire: speed and turn.
@@ -113,6 +115,11 @@ impl Bench for SeekurBench {
 
     fn braking(&self) -> [f64; 2] {
         [0.5, 1.0]
+    }
+
+    fn silent_braking(&self) -> f64 {
+        // What the adapter has told the robot to use.
+        0.5
     }
 
     fn limits(&self) -> [f64; 3] {
@@ -204,6 +211,10 @@ impl Bench for CarBench {
 
     fn braking(&self) -> [f64; 2] {
         [0.6, 1.12]
+    }
+
+    fn silent_braking(&self) -> f64 {
+        0.3
     }
 
     fn limits(&self) -> [f64; 3] {

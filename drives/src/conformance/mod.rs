@@ -7,13 +7,16 @@
 pub mod attack;
 mod bench;
 mod checks;
+mod curves;
 mod hostile;
 mod ranges;
 mod rig;
+mod silence;
 mod taps;
 mod twins;
 
 pub use bench::{Bench, CarBench, SeekurBench};
+pub use curves::speed_and_steering;
 pub use rig::Rig;
 pub use taps::{Tap, Told};
 pub use twins::{TWINS, Twin};
@@ -69,6 +72,11 @@ pub const CHECKS: &[Check] = &[
         name: "feedback has the sign and scale of the motion",
         requirements: &["DRIVE-07"],
         run: ranges::feedback,
+    },
+    Check {
+        name: "the robot rests in time when its host falls silent",
+        requirements: &["DRIVE-14"],
+        run: silence::host_death,
     },
     Check {
         name: "hostile bytes never move the robot",

@@ -10,7 +10,7 @@ use std::time::Duration as Wall;
 use haltline::decision::{Decision, Reason, StopStatus};
 use haltline::time::{Duration, Instant};
 use haltline_robots::Robot;
-use haltline_scenarios::controller::{RobotKernel, TickInputs, tick};
+use haltline_scenarios::controller::{Controller, RobotKernel, TickInputs, tick};
 use haltline_scenarios::drive::SetPoint;
 use haltline_scenarios::odometry::RawOdometry;
 use haltline_scenarios::proposer::RawCommand;
@@ -36,7 +36,7 @@ pub type Opener = Box<dyn FnMut() -> io::Result<Box<dyn Link>>>;
 /// Everything that drives one robot.
 pub struct Control {
     robot: Robot,
-    kernel: RobotKernel,
+    controller: Box<dyn Controller>,
     drive: Box<dyn Drive>,
     opener: Opener,
     link: Option<Box<dyn Link>>,
@@ -57,21 +57,22 @@ pub struct Control {
 impl Control {
     /// Connects everything; nothing moves before [`Control::run`].
     ///
+    /// - `controller`: [`shield`], or anything that answers ticks with decisions of the kernel
+    ///
     /// # Errors
-    /// The link cannot be opened, or the kernel refuses the robot.
+    /// The link cannot be opened.
     pub fn new(
         robot: &Robot,
+        controller: Box<dyn Controller>,
         drive: Box<dyn Drive>,
         mut opener: Opener,
         eye: Eye,
         clock: Clock,
     ) -> io::Result<Self> {
-        let kernel = RobotKernel::new(robot.config)
-            .map_err(|error| io::Error::new(io::ErrorKind::InvalidInput, format!("{error:?}")))?;
         let link = Some(opener()?);
         Ok(Self {
             robot: robot.clone(),
-            kernel,
+            controller,
             drive,
             opener,
             link,
@@ -161,7 +162,7 @@ impl Control {
             self.drive.enable(now);
         }
         let inputs = self.inputs(operator, wanted, now);
-        let decision = tick(&mut self.kernel, &self.robot, &inputs, now.as_us());
+        let decision = tick(self.controller.as_mut(), &self.robot, &inputs, now.as_us());
         if decision.status != StopStatus::Latched {
             self.resetting = false;
         }
@@ -300,6 +301,20 @@ impl Control {
     #[must_use]
     pub const fn account(&self) -> Account {
         self.account
+    }
+}
+
+/// The kernel in shield mode: somebody else proposes.
+///
+/// # Errors
+/// The kernel refuses the robot.
+pub fn shield(robot: &Robot) -> io::Result<Box<dyn Controller>> {
+    match RobotKernel::new(robot.config) {
+        Ok(kernel) => Ok(Box::new(kernel)),
+        Err(error) => Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            format!("the kernel refuses the robot: {error:?}"),
+        )),
     }
 }
 
