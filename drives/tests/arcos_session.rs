@@ -514,3 +514,17 @@ fn the_skid_factor_is_found_by_turning() {
     assert!(skid_factor(&[(0.1, 0.1)]).is_none());
     assert!(skid_factor(&[(6.0, f64::NAN)]).is_none());
 }
+
+/// Half a packet must not be completed on the next link.
+#[test]
+fn a_new_link_begins_with_a_stop_and_not_with_the_rest_of_an_old_packet() {
+    let mut script = Script::driving();
+    script.decide(0.4, 0.0).unwrap();
+    script.now_ms += 5;
+    let now = at(script.now_ms);
+    let mut half = [0; 4];
+    assert_eq!(script.adapter.outgoing(&mut half, now), 4);
+    script.adapter.reconnected(now);
+    script.deframer = Deframer::default();
+    assert_eq!(script.wait(20)[0], (number::STOP, None));
+}

@@ -184,6 +184,7 @@ impl Script {
         let words: Vec<&str> = line.split(' ').collect();
         match words.as_slice() {
             ["?DRV", "~DMS"] => format!("F 0 ~DMS={}", self.dead_man_ms),
+            ["", "0"] => "ERR(258)".to_owned(),
             ["!DRV", option] => option.to_string(),
             ["!DRV", mode, value, _] => format!("{mode} {value}"),
             ["!STEER", value, _] => value.to_string(),
@@ -280,7 +281,13 @@ impl Script {
 fn the_dead_man_time_is_set_and_read_back_before_anything_else_may_happen() {
     let mut script = Script::new(200);
     script.wait(400);
-    let first: Vec<&str> = script.lines.iter().map(String::as_str).take(5).collect();
+    let first: Vec<&str> = script
+        .lines
+        .iter()
+        .map(String::as_str)
+        .skip(1)
+        .take(5)
+        .collect();
     assert_eq!(
         first,
         [
@@ -381,4 +388,62 @@ fn zero_after_forward_motion_is_the_brake_and_then_neutral() {
             .unwrap(),
         "!DRV F 0 0"
     );
+}
+
+/// A host that died in the middle of a line has left its beginning in the board.
+#[test]
+fn a_line_somebody_else_began_is_spoiled_and_not_finished() {
+    for begun in [
+        "!DRV F 1000",
+        "!DRV F 10",
+        "!DRV F 1000 10",
+        "!STEER 90",
+        "!DR",
+        "",
+    ] {
+        let mut car = Car::new(CarModel::default(), at(0));
+        car.receive(begun.as_bytes(), at(0));
+        let file = haltline_robots::Robot::embedded("pses_car").unwrap();
+        let mut adapter = Adapter::new(car_config(&file, 99), at(0));
+        for ms in 1..3000 {
+            adapter.tick(at(ms));
+            let mut room = [0; 300];
+            let count = adapter.outgoing(&mut room, at(ms));
+            car.receive(&room[..count], at(ms));
+            car.step(at(ms));
+            adapter.receive(&car.outgoing(), at(ms));
+            assert!(
+                car.truth().twist[0].abs() < 1e-12,
+                "{begun} drives at {ms} ms"
+            );
+        }
+        assert_eq!(adapter.state(), State::Disabled, "after {begun}");
+    }
+}
+
+/// Small writes and restarts never cut a line: every line the board gets is one of ours, whole.
+#[test]
+fn a_restart_in_the_middle_of_a_line_finishes_it() {
+    for cut in 1..15 {
+        let mut script = Script::driving();
+        script.wait(5);
+        let now = at(script.now_ms);
+        script.adapter.tick(now.plus(Duration::from_ms(41)));
+        let mut room = [0; 15];
+        let count = script.adapter.outgoing(&mut room[..cut], now);
+        assert_eq!(count, cut);
+        // An answer to nothing: everything starts again.
+        for _ in 0..20 {
+            script.adapter.receive(b":nonsense\x03", now);
+        }
+        let mut rest = [0; 300];
+        let more = script.adapter.outgoing(&mut rest, now);
+        let line = [&room[..cut], &rest[..more]].concat();
+        assert_eq!(
+            line,
+            b"!STEER 144 144\n",
+            "{}",
+            String::from_utf8_lossy(&line)
+        );
+    }
 }

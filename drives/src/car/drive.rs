@@ -4,7 +4,7 @@ use haltline::decision::Decision;
 use haltline::input::Motion;
 use haltline::time::{Duration, Instant};
 
-use super::{Adapter, KEEP_ALIVE, Link, curve, wheel_angle};
+use super::{Adapter, KEEP_ALIVE, Link, SPOIL, curve, wheel_angle};
 use crate::drive::{Drive, DriveError, Fault, Feedback, Frame, State};
 use crate::governor::Setpoint;
 use crate::uc::ANSWER_MS;
@@ -87,7 +87,11 @@ impl Drive for Adapter {
     }
 
     fn outgoing(&mut self, out: &mut [u8], _now: Instant) -> usize {
-        self.out.drain_into(out)
+        let count = self.out.drain_into(out);
+        if let Some(last) = out.get(..count).and_then(<[u8]>::last) {
+            self.mid_line = *last != b'\n';
+        }
+        count
     }
 
     fn feedback(&mut self) -> Option<Feedback> {
@@ -120,13 +124,17 @@ impl Drive for Adapter {
     fn reconnected(&mut self, now: Instant) {
         self.deframer = Deframer::default();
         self.restart(now);
+        // A new link: what was begun on the old one is spoiled, not finished.
+        self.out.clear();
+        self.mid_line = false;
+        let _ = self.out.extend(SPOIL);
     }
 
     fn shut_down(&mut self, now: Instant) {
         self.link = match self.link {
             Link::Open => Link::Closing(now),
             Link::SettingUp(_) => {
-                self.out.clear();
+                self.forget_lines();
                 Link::Closed
             }
             closing => closing,

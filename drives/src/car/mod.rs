@@ -26,6 +26,9 @@ use setup::Setup;
 pub(crate) const WHEEL_GROUP: u8 = 1;
 /// Data group of the turn rate.
 pub(crate) const GYRO_GROUP: u8 = 2;
+/// Ends a line that somebody else has begun so that it is refused: its two numbers differ, or it
+/// begins with nothing the board knows.
+const SPOIL: &[u8] = b" 0\n";
 /// How often something is said while nothing is decided.
 const KEEP_ALIVE: Duration = Duration::from_ms(40);
 /// How long the brake is held after the car was last seen moving.
@@ -65,6 +68,8 @@ pub struct Adapter {
     governor: Governor,
     deframer: Deframer,
     out: Buffer<1024>,
+    /// The last byte that was handed out did not end its line.
+    mid_line: bool,
     pending: Pending,
     link: Link,
     odometry: CarOdometry,
@@ -93,11 +98,15 @@ impl Adapter {
     /// An adapter that sets up its board from the first tick on.
     #[must_use]
     pub fn new(config: Config, now: Instant) -> Self {
+        let mut out = Buffer::default();
+        // It fits: the buffer is empty.
+        let _ = out.extend(SPOIL);
         Self {
             config,
             governor: Governor::new(config.braking, true),
             deframer: Deframer::default(),
-            out: Buffer::default(),
+            out,
+            mid_line: false,
             pending: Pending::default(),
             link: Link::SettingUp(Setup::new(now)),
             odometry: CarOdometry::new(config.track_m),
@@ -122,10 +131,22 @@ impl Adapter {
         let _ = self.governor.interrupt(now);
         self.link = Link::SettingUp(Setup::new(now));
         self.pending = Pending::default();
-        self.out.clear();
+        self.forget_lines();
         self.odometry.restart();
         (self.wanted, self.silent, self.waiting) = (false, false, false);
         self.heard = now;
+    }
+
+    /// Drops the lines that wait, but not the rest of one that has been begun: cut short, it
+    /// could be a valid line with another number.
+    fn forget_lines(&mut self) {
+        let waiting = self.out;
+        self.out.clear();
+        let mut rest = waiting.as_slice().split_inclusive(|byte| *byte == b'\n');
+        if let (true, Some(rest)) = (self.mid_line, rest.next()) {
+            // It fits: it was there before.
+            let _ = self.out.extend(rest);
+        }
     }
 
     fn say(&mut self, command: Command, now: Instant) {

@@ -262,13 +262,10 @@ impl Control {
         self.drive.receive(&heard, now);
         read?;
         self.drive.tick(now);
-        let mut room = [0; 512];
         // What the wire does not take is not queued: old set points must not pile up behind it.
-        while self.unsent.len() < room.len() {
+        let mut room = [0; 512];
+        if self.unsent.is_empty() {
             let count = self.drive.outgoing(&mut room, now);
-            if count == 0 {
-                break;
-            }
             self.unsent
                 .extend_from_slice(room.get(..count).unwrap_or_default());
         }

@@ -31,6 +31,9 @@ impl Drive for Adapter {
             return Err(DriveError::new(Frame::Decision, Fault::NotReady));
         }
         self.watch(now);
+        if !matches!(self.link, Link::Open) {
+            return Err(DriveError::new(Frame::Decision, Fault::NotReady));
+        }
         if let Motion::Arc { .. } = decision.setpoint {
             let ramp = self.governor.withhold(now);
             self.put(ramp);
@@ -118,6 +121,7 @@ impl Drive for Adapter {
     fn reconnected(&mut self, now: Instant) {
         self.deframer = Deframer::default();
         self.restart(now);
+        self.outbox.forget_partial();
     }
 
     fn shut_down(&mut self, now: Instant) {

@@ -38,6 +38,11 @@ impl Outbox {
         };
     }
 
+    /// The rest of a packet must not reach a new link: it could complete an old set point there.
+    pub(super) const fn forget_partial(&mut self) {
+        self.partial.clear();
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         let set_points = self.words.is_none() && self.second.is_none();
         let stops = !self.emergency && !self.stop;
