@@ -1,4 +1,5 @@
-//! `haltline-drives emulate|drive`: an emulated robot, or the loop that drives one.
+//! `haltline-drives emulate|drive|measure`: an emulated robot, the loop that drives one, the bench
+//! procedure.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write as _};
@@ -12,6 +13,7 @@ use haltline_drives::drive::State;
 use haltline_drives::emulator::process::{Process, print};
 use haltline_drives::eye::Eye;
 use haltline_drives::link;
+use haltline_drives::measure::{self, Live};
 use haltline_drives::robots::{Kind, corridor, course, follow};
 use haltline_drives::trace::Trace;
 use haltline_robots::Robot;
@@ -21,13 +23,16 @@ usage: haltline-drives emulate seekur-jr|pses-car [--port pty|tcp:ADDRESS] [--ro
                        [--hall AHEAD] [--watchdog-s S] [--ignore-watchdog]
        haltline-drives drive seekur-jr|pses-car --port PATH|tcp:ADDRESS --scan ADDRESS
                        [--robot FILE] [--speed MPS] [--straight] [--for S] [--trace FILE]
-                       [--persist] [--panic-moving]";
+                       [--persist] [--panic-moving]
+       haltline-drives measure seekur-jr|pses-car --port PATH|tcp:ADDRESS [--robot FILE]
+                       [--speed MPS]     nothing guards these motions: free floor, stop button";
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let result = match words.first().map(String::as_str) {
         Some("emulate") => emulate(&words),
         Some("drive") => drive(&words),
+        Some("measure") => bench(&words),
         _ => Err(bad(USAGE)),
     };
     match result {
@@ -142,21 +147,6 @@ fn drive(words: &[String]) -> io::Result<()> {
         (run_s < end_s).then_some(wanted)
     };
     let ending = control.run(&operator, propose, |tick| {
-        let [v, w] = tick.feedback.twist;
-        let line = format!(
-            "{:.3} {:?} {:?} {:?} {v:.3} {w:.3} {:?}",
-            tick.now.as_us() as f64 * 1e-6,
-            tick.state,
-            tick.decision.action,
-            tick.decision.reason,
-            tick.decision.setpoint,
-        );
-        let fault = tick
-            .fault
-            .map_or(String::new(), |fault| format!(" ({fault})"));
-        let scan = tick
-            .scan_fault
-            .map_or(String::new(), |fault| format!(" ({fault})"));
         if let Some(Err(error)) = trace.as_mut().map(|trace| trace.tick(tick)) {
             let _ = writeln!(io::stderr(), "the trace ends here: {error}");
             trace = None;
@@ -166,11 +156,30 @@ fn drive(words: &[String]) -> io::Result<()> {
             operator.reset.store(true, Ordering::Relaxed);
         }
         // Whoever reads may have gone; the robot is more important.
-        let _ = writeln!(io::stdout(), "{line}{fault}{scan}");
+        let _ = writeln!(io::stdout(), "{tick}");
     });
     let _ = writeln!(io::stdout(), "end: {ending:?} {:?}", control.account());
     match ending {
         Ending::Panicked(_) | Ending::Unreachable => Err(io::Error::other("ended badly")),
         Ending::Asked | Ending::Finished => Ok(()),
     }
+}
+
+fn bench(words: &[String]) -> io::Result<()> {
+    let (kind, file) = robot(words)?;
+    let port = option(words, "--port").ok_or_else(|| bad(USAGE))?;
+    let speed = number(words, "--speed")?.unwrap_or(0.5);
+    let clock = Clock::default();
+    let adapter = kind.adapter(&file, std::process::id(), clock.now());
+    let period = file.config.timing.period;
+    let link = link::open(port, kind.baud())?;
+    let mut live = Live::new(adapter, link, clock, period, kind == Kind::PsesCar);
+    let outcome = measure::run(&file, &mut live, speed).map_err(io::Error::other)?;
+    for figure in &outcome.figures {
+        writeln!(io::stdout(), "{}: {figure}", figure.key)?;
+    }
+    for note in &outcome.notes {
+        writeln!(io::stdout(), "{note}")?;
+    }
+    Ok(())
 }

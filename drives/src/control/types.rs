@@ -1,6 +1,7 @@
 //! What goes in and out of the loop.
 
 use std::any::Any;
+use std::fmt;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -42,6 +43,57 @@ pub struct Tick<'a> {
     pub scan_fault: Option<ScanFault>,
     /// So far.
     pub account: Account,
+}
+
+/// One screen: what is decided and why, where the robot is, what went wrong so far.
+impl fmt::Display for Tick<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Decision {
+            action,
+            reason,
+            status,
+            ..
+        } = self.decision;
+        let [x, y, theta] = self.feedback.pose;
+        let [v, w] = self.feedback.twist;
+        let age_ms = self
+            .now
+            .since(self.feedback.stamp)
+            .unwrap_or_default()
+            .as_us()
+            / 1000;
+        writeln!(out, "drive     {:?}", self.state)?;
+        writeln!(out, "decision  {action:?}: {reason:?} ({status:?})")?;
+        writeln!(out, "set point {:?}", self.decision.setpoint)?;
+        writeln!(out, "measured  {v:+.3} m/s {w:+.3} rad/s, {age_ms} ms old")?;
+        writeln!(
+            out,
+            "pose      {x:+.3} m {y:+.3} m {:+.1} deg",
+            theta.to_degrees()
+        )?;
+        if let Some(battery_v) = self.feedback.battery_v {
+            writeln!(out, "battery   {battery_v:.1} V")?;
+        }
+        let Account {
+            ticks,
+            missed,
+            latest_us,
+            reconnections,
+            faults,
+        } = self.account;
+        writeln!(
+            out,
+            "deadlines {missed} of {ticks} missed, latest {:.1} ms; {reconnections} reconnections, {faults} faults",
+            latest_us as f64 * 1e-3
+        )?;
+        if let Some(fault) = self.fault {
+            writeln!(out, "drive says   {fault}")?;
+        }
+        if let Some(fault) = self.scan_fault {
+            writeln!(out, "scanner says {fault}")?;
+        }
+        Ok(())
+    }
 }
 
 /// Deadlines and incidents.

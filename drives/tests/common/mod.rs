@@ -183,5 +183,5 @@ pub fn log(name: &str) -> PathBuf {
 pub fn tail(path: &Path) -> String {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let lines: Vec<&str> = text.lines().collect();
-    lines[lines.len().saturating_sub(8)..].join("\n")
+    lines[lines.len().saturating_sub(24)..].join("\n")
 }
