@@ -25,6 +25,8 @@ pub mod drive;
 pub mod emulator;
 #[cfg(feature = "std")]
 pub mod eye;
+#[cfg(feature = "std")]
+pub mod goal;
 pub mod governor;
 #[cfg(feature = "std")]
 pub mod link;

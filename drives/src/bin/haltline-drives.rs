@@ -12,17 +12,20 @@ use haltline_drives::control::{Control, Ending, Operator, shield};
 use haltline_drives::drive::State;
 use haltline_drives::emulator::process::{Process, print};
 use haltline_drives::eye::Eye;
+use haltline_drives::goal::navigate;
 use haltline_drives::link;
 use haltline_drives::measure::{self, Live};
 use haltline_drives::robots::{Kind, corridor, course, follow};
 use haltline_drives::trace::Trace;
 use haltline_robots::Robot;
+use haltline_scenarios::controller::Controller;
 
 const USAGE: &str = "\
 usage: haltline-drives emulate seekur-jr|pses-car [--port pty|tcp:ADDRESS] [--robot FILE]
                        [--hall AHEAD] [--watchdog-s S] [--ignore-watchdog]
        haltline-drives drive seekur-jr|pses-car --port PATH|tcp:ADDRESS --scan ADDRESS
-                       [--robot FILE] [--speed MPS] [--straight] [--for S] [--trace FILE]
+                       [--robot FILE] [--goal X,Y[,DEG] | --speed MPS [--straight]]
+                       [--for S] [--trace FILE]
                        [--persist] [--panic-moving]
        haltline-drives measure seekur-jr|pses-car --port PATH|tcp:ADDRESS [--robot FILE]
                        [--speed MPS]     nothing guards these motions: free floor, stop button";
@@ -125,7 +128,11 @@ fn drive(words: &[String]) -> io::Result<()> {
     let clock = Clock::default();
     let adapter = kind.adapter(&file, std::process::id(), clock.now());
     let opener = Box::new(move || link::open(&port, kind.baud()));
-    let mut control = Control::new(&file, shield(&file)?, adapter, opener, eye, clock)?;
+    let controller = match option(words, "--goal") {
+        Some(text) => goal(&file, text)?,
+        None => shield(&file)?,
+    };
+    let mut control = Control::new(&file, controller, adapter, opener, eye, clock)?;
     let operator = Operator::with_signals()?;
     operator.reset.store(true, Ordering::Relaxed);
     let speed = number(words, "--speed")?.unwrap_or(0.5);
@@ -162,6 +169,17 @@ fn drive(words: &[String]) -> io::Result<()> {
     match ending {
         Ending::Panicked(_) | Ending::Unreachable => Err(io::Error::other("ended badly")),
         Ending::Asked | Ending::Finished => Ok(()),
+    }
+}
+
+fn goal(file: &Robot, text: &str) -> io::Result<Box<dyn Controller>> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(str::parse).collect();
+    match numbers.as_deref() {
+        Ok([x, y]) => navigate(file, [*x, *y], None),
+        Ok([x, y, degrees]) => navigate(file, [*x, *y], Some(degrees.to_radians())),
+        _ => Err(bad(format!(
+            "--goal {text:?}: write metres as X,Y or X,Y,DEGREES"
+        ))),
     }
 }
 

@@ -50,6 +50,8 @@ pub struct Control {
     fresh: bool,
     decision: Option<Decision>,
     resetting: bool,
+    /// When the controller's own route was ordered: after the last release of a latched stop.
+    ordered: Option<Instant>,
     account: Account,
     fault: Option<DriveError>,
 }
@@ -86,6 +88,7 @@ impl Control {
             fresh: false,
             decision: None,
             resetting: false,
+            ordered: None,
             account: Account::default(),
             fault: None,
         })
@@ -163,7 +166,9 @@ impl Control {
         }
         let inputs = self.inputs(operator, wanted, now);
         let decision = tick(self.controller.as_mut(), &self.robot, &inputs, now.as_us());
-        if decision.status != StopStatus::Latched {
+        if decision.status == StopStatus::Latched {
+            self.ordered = None;
+        } else {
             self.resetting = false;
         }
         self.decision = Some(decision);
@@ -201,14 +206,22 @@ impl Control {
         });
         self.fresh = false;
         // The motors must be on, and zero on the wire, before the kernel may run.
+        let own_route = self.controller.via_points().is_some();
+        let released = self
+            .decision
+            .is_some_and(|last| last.status != StopStatus::Latched);
+        if own_route && released {
+            self.ordered = self.ordered.or(Some(now));
+        }
         let ready = self.resetting && self.drive.state() == State::Driving;
         TickInputs {
             scans: core::mem::take(&mut self.scans),
             odometry,
-            command: Some(RawCommand {
+            command: (!own_route).then_some(RawCommand {
                 stamp_us: now.as_us(),
                 motion,
             }),
+            order_us: self.ordered.map(Instant::as_us),
             emergency_stop: operator.emergency.load(Ordering::Relaxed),
             reset_us: ready.then_some(now.as_us()),
         }
