@@ -129,6 +129,9 @@ fn set_point(decision: &Decision) -> (i32, i32) {
     }
 }
 
+//= spec/navigate.md#nav-09
+//= type=test
+//# Via points MUST be passed in their order; the destination MUST NOT count as reached before the last of them.
 #[test]
 fn drives_through_via_points_and_turns_to_its_heading() {
     let mut drive = Drive::new();
@@ -148,6 +151,9 @@ fn drives_through_via_points_and_turns_to_its_heading() {
     );
 }
 
+//= spec/navigate.md#nav-10
+//= type=test
+//# While nothing leads on, the navigator MUST report why, the point that decided if one did, and since when.
 #[test]
 fn a_goal_behind_the_wall_is_blocked_with_point_and_time() {
     let mut drive = Drive::new();
@@ -207,6 +213,9 @@ fn without_a_route_it_is_a_shield() {
     );
 }
 
+//= spec/navigate.md#nav-06
+//= type=test
+//# A tick without a route MUST NOT follow the route of an earlier tick.
 #[test]
 fn a_route_that_is_held_back_stops_the_robot() {
     let mut drive = Drive::new();
@@ -221,6 +230,9 @@ fn a_route_that_is_held_back_stops_the_robot() {
     assert_eq!(answer.decision.reason, Reason::CommandMissing);
 }
 
+//= spec/navigate.md#nav-08
+//= type=test
+//# A route together with a command in one tick MUST stop the robot.
 #[test]
 fn a_route_and_a_command_contradict_each_other() {
     let mut drive = Drive::new();
@@ -249,6 +261,9 @@ fn impossible_and_future_routes_are_refused() {
     assert_eq!(answer.decision.reason, Reason::CommandFuture);
 }
 
+//= spec/navigate.md#nav-07
+//= type=test
+//# A route ordered before or at the last release of a latched stop MUST NOT be followed.
 #[test]
 fn an_emergency_stop_voids_the_route_and_a_protective_stop_does_not() {
     let mut drive = Drive::new();
@@ -290,6 +305,9 @@ fn an_emergency_stop_voids_the_route_and_a_protective_stop_does_not() {
     assert!(set_point(&answer.decision).0 > 0, "{answer:?}");
 }
 
+//= spec/navigate.md#nav-11
+//= type=test
+//# A robot that moves for the given time without coming nearer to its next target MUST stop until it gets another route.
 #[test]
 fn moving_without_coming_nearer_ends_the_route_until_another() {
     // Coming nearer by less than 100 m does not count here, so any way gives up.

@@ -29,6 +29,12 @@ pub enum Family {
     Time,
     /// The marker filter is finite, symmetric positive and gated.
     Ekf,
+    /// The planning grid is bounded, and no hit is lost in it.
+    Grid,
+    /// The planner proposes, the guard disposes, and blocked says why.
+    Nav,
+    /// Sign, scale and curvature survive the wire; silence stops.
+    Drive,
 }
 
 impl Family {
@@ -47,6 +53,9 @@ impl Family {
             Self::Memory => "MEMORY",
             Self::Time => "TIME",
             Self::Ekf => "EKF",
+            Self::Grid => "GRID",
+            Self::Nav => "NAV",
+            Self::Drive => "DRIVE",
         }
     }
 }
@@ -110,6 +119,13 @@ const FILES: [(Family, &str, &str); 11] = [
     ),
     (Family::Time, "spec/time.md", include_str!("../time.md")),
     (Family::Ekf, "spec/ekf.md", include_str!("../ekf.md")),
+    (Family::Grid, "spec/grid.md", include_str!("../grid.md")),
+    (
+        Family::Nav,
+        "spec/navigate.md",
+        include_str!("../navigate.md"),
+    ),
+    (Family::Drive, "spec/drive.md", include_str!("../drive.md")),
 ];
 
 const ASSUMPTIONS_FILE: &str = "spec/assumptions.md";

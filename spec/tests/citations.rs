@@ -6,7 +6,7 @@ use haltline_spec::requirements::{requirement, requirements};
 use std::path::{Path, PathBuf};
 
 /// Crates whose sources are read; those that do not exist yet are skipped.
-const CRATES: [&str; 7] = [
+const CRATES: [&str; 9] = [
     "kernel",
     "spec",
     "scenarios",
@@ -14,6 +14,8 @@ const CRATES: [&str; 7] = [
     "cli",
     "verification",
     "drives",
+    "maps",
+    "pilots",
 ];
 
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {

@@ -232,6 +232,8 @@ impl Choice<'_> {
 
     /// V_a: whether the robot can stop within `clearance`, whatever it was told before (Loh 4.5).
     fn is_admissible(&self, velocity: Velocity, clearance: Clearance) -> bool {
+        //= spec/navigate.md#nav-03
+        //# The robot MUST be able to stop within the clearance of every candidate, even if any motion that may still be executing goes on for the reaction time.
         let moves = velocity.linear_mps > 0.0 || velocity.angular_radps.abs() > 0.0;
         let start = if self.situation.is_at_rest() {
             self.worth_starting(velocity)

@@ -159,6 +159,8 @@ impl Contacts {
             *least = key;
             *contact = obstacle.position;
             set(&mut self.sieve.chord, index, chord_of(key));
+        //= spec/navigate.md#nav-04
+        //# A plan MUST NOT depend on the order of the points, and the same input MUST give the same plan.
         } else if key <= *least && precedes(obstacle.position, *contact) {
             *contact = obstacle.position;
         }

@@ -116,6 +116,8 @@ fn turning_bounds(situation: &Situation<'_>, window: &mut DynamicWindow) {
 
 /// All lanes through the window, curvatures first, then the turns on the spot; and the window.
 pub(super) fn lanes(situation: &Situation<'_>) -> Option<(DynamicWindow, [Lane; LANES])> {
+    //= spec/navigate.md#nav-02
+    //# Every candidate of a plan MUST lie in the dynamic window around the command in force.
     let mut window = DynamicWindow::new(&situation.limits, situation.velocity)?;
     turning_bounds(situation, &mut window);
     let curvatures = curvatures(situation, &window);

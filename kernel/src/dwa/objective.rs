@@ -68,6 +68,8 @@ fn head(situation: &Situation<'_>, sighting: Sighting, lane: &Lane, travel: f64)
 /// 0 at the inscribed circle of the outline, 1 beyond the range that counts. Farther along
 /// the path nearness counts less, or the robot would rather turn round than enter a gap.
 pub(super) fn clear(situation: &Situation<'_>, near_m: [f64; PLACES]) -> f64 {
+    //= spec/navigate.md#nav-12
+    //# The clearance that scores a candidate MUST NOT depend on the robot's orientation.
     let inscribed = situation.footprint.inscribed_m();
     let turning = (situation.footprint.corner_m() - inscribed).max(1e-6);
     let [first, ..] = PARTS;

@@ -261,6 +261,9 @@ fn a_goal_behind_is_turned_to_first() {
 }
 
 /// Loh 6.2.1 saw the robot circle an object beside its path: it must pass it.
+//= spec/navigate.md#nav-12
+//= type=test
+//# The clearance that scores a candidate MUST NOT depend on the robot's orientation.
 #[test]
 fn an_object_beside_the_path_is_not_orbited() {
     for (left, side) in [(true, 1.0), (false, -1.0)] {

@@ -74,6 +74,9 @@ fn course_of(velocity: Velocity) -> Course {
     }
 }
 
+//= spec/navigate.md#nav-02
+//= type=test
+//# Every candidate of a plan MUST lie in the dynamic window around the command in force.
 #[test]
 fn candidates_lie_in_the_window_and_in_order() {
     let mut random = Random(0x5eed_0005);
@@ -118,6 +121,9 @@ fn candidates_lie_in_the_window_and_in_order() {
     assert!(moving > CASES / 3, "{moving}");
 }
 
+//= spec/navigate.md#nav-03
+//= type=test
+//# The robot MUST be able to stop within the clearance of every candidate, even if any motion that may still be executing goes on for the reaction time.
 #[test]
 fn candidates_stop_before_the_bare_outline_touches_anything() {
     let mut random = Random(0x5eed_0006);
@@ -199,6 +205,9 @@ fn the_fast_pass_finds_the_least_arc_distance() {
     assert!(contacts > 1_000 && free > 1_000, "{contacts} {free}");
 }
 
+//= spec/navigate.md#nav-04
+//= type=test
+//# A plan MUST NOT depend on the order of the points, and the same input MUST give the same plan.
 #[test]
 fn plans_do_not_depend_on_the_order_of_points() {
     let mut random = Random(0x5eed_0008);

@@ -204,6 +204,9 @@ fn a_slightly_different_scan_is_told_apart() {
 }
 
 /// A thin pole, hit by one of three beams through its cell; the other two look past it.
+//= spec/grid.md#grid-02
+//= type=test
+//# With the every-beam rule, the cell of a hit MUST be occupied after the scan.
 #[test]
 fn the_nearest_beam_rule_loses_a_pole_that_every_beam_keeps() {
     let seen = |update| {

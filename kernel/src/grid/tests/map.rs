@@ -33,6 +33,9 @@ fn scans_until(map: &mut Map, from: &Pose, beam: Beam, wanted: impl Fn(Occupancy
     scans
 }
 
+//= spec/grid.md#grid-01
+//= type=test
+//# The value of every cell MUST stay between floor and ceiling.
 #[test]
 fn cells_change_back_within_the_time_that_the_clamps_promise() {
     let defaults = GridRules::default();
@@ -128,6 +131,9 @@ fn the_robots_own_parts_leave_no_trace() {
     }
 }
 
+//= spec/grid.md#grid-03
+//= type=test
+//# A place off the grid MUST be unknown.
 #[test]
 fn off_the_map_is_unknown_and_cannot_be_set() {
     let (mut map, _) = corridor(UpdateRule::EveryBeam);
@@ -170,6 +176,9 @@ fn the_map_of_the_thesis_lies_turned_by_half() {
     assert_eq!(map.lower_left(), pose(-20.0, 20.0, PI));
 }
 
+//= spec/grid.md#grid-04
+//= type=test
+//# A scan that cannot be placed MUST NOT change any cell.
 #[test]
 fn what_cannot_be_entered_changes_nothing() {
     let (mut map, from) = corridor(UpdateRule::EveryBeam);

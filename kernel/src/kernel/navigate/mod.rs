@@ -128,6 +128,8 @@ impl<const S: usize, const B: usize, const M: usize, const W: usize, const H: us
             self.restarted = tick.now;
         }
         self.map();
+        //= spec/navigate.md#nav-06
+        //# A tick without a route MUST NOT follow the route of an earlier tick.
         let Some(route) = route else {
             self.course = None;
             return Navigation {
@@ -175,12 +177,16 @@ impl<const S: usize, const B: usize, const M: usize, const W: usize, const H: us
 
     /// Why `route` cannot be followed, if it cannot.
     fn objection(&self, inputs: &Inputs<'_>, route: &Route<'_>, now: Instant) -> Option<Reason> {
+        //= spec/navigate.md#nav-08
+        //# A route together with a command in one tick MUST stop the robot.
         if inputs.command != Reading::Absent || !route.is_valid() {
             return Some(Reason::CommandMalformed);
         }
         if route.stamp > now {
             return Some(Reason::CommandFuture);
         }
+        //= spec/navigate.md#nav-07
+        //# A route ordered before or at the last release of a latched stop MUST NOT be followed.
         (route.stamp <= self.restarted).then_some(Reason::CommandMissing)
     }
 

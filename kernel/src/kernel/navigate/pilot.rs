@@ -58,6 +58,8 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
         *self.course = Some(course);
         let distance_m = course.straight(route, &odometry.pose).distance_m;
         let rules = &self.planning.progress;
+        //= spec/navigate.md#nav-11
+        //# A robot that moves for the given time without coming nearer to its next target MUST stop until it gets another route.
         if self.watch.has_given_up(rules, course.next, distance_m) {
             return self.blocked(tick, Obstruction::NoProgress, None, None);
         }
@@ -100,6 +102,8 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
     fn steer(&self, route: &Route<'_>, course: &Course, odometry: &Odometry, tick: &Tick) -> Plan {
         let straight = course.straight(route, &odometry.pose);
         let mut onward = course.onward(route, &odometry.pose, self.ahead_m());
+        //= spec/navigate.md#nav-09
+        //# Via points MUST be passed in their order; the destination MUST NOT count as reached before the last of them.
         if onward.is_reached() && !straight.is_goal {
             // The route comes by its own end: first what lies before it.
             onward = straight;
@@ -123,6 +127,8 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
         let step = tick.elapsed.min(self.kernel.config.config().timing.period);
         let reference = self.kernel.pipeline.last();
         let mut attempt = Attempt::of(Progress::Driving { next }, Some(plan));
+        //= spec/navigate.md#nav-05
+        //# When the guard refuses a candidate, the next ones MUST be tried in their order, at most eight in all; when none is left, the robot MUST brake.
         for (rank, candidate) in plan.candidates().iter().enumerate() {
             let config = self.kernel.config.config();
             let Some(vertex) = proposal::vertex(config, candidate.velocity) else {
@@ -132,6 +138,8 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
                 continue;
             }
             let verdict = self.kernel.judge(odometry, vertex, tick.now);
+            //= spec/navigate.md#nav-01
+            //# Every set point of the navigator that is not a braking one MUST be certified by the guard in the same tick.
             if verdict.refusal.is_none() {
                 self.watch.moved(tick.elapsed);
                 let mut outcome = self.kernel.accepted(vertex, 1000, false, verdict);
@@ -166,6 +174,8 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
         point: Option<BodyPoint>,
         plan: Option<Plan>,
     ) -> (Outcome, Attempt) {
+        //= spec/navigate.md#nav-10
+        //# While nothing leads on, the navigator MUST report why, the point that decided if one did, and since when.
         let since = self.watch.blocked(tick.now);
         let cause = match reason {
             Obstruction::Guard(_) => Reason::GuardBlocked,
