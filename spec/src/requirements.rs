@@ -99,7 +99,7 @@ pub struct Assumption {
 }
 
 /// Every file of requirements: family, path from the repository root, content.
-const FILES: [(Family, &str, &str); 11] = [
+const FILES: [(Family, &str, &str); 14] = [
     (Family::Guard, "spec/guard.md", include_str!("../guard.md")),
     (Family::Brake, "spec/brake.md", include_str!("../brake.md")),
     (Family::Limit, "spec/limit.md", include_str!("../limit.md")),
