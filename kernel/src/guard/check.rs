@@ -1,6 +1,6 @@
 //! Points against tubes: the inner loop of the guard.
 
-use super::tube::{Sample, Swept, Tube, eighths_up};
+use super::tube::{EIGHTH_BITS, Sample, Swept, Tube};
 use super::{BodyPoint, Budget};
 use crate::geometry::frame::PointMm;
 use crate::geometry::rect::Rect;
@@ -130,7 +130,7 @@ fn touched_sample(
     if extra_mm > EXTRA_MAX_MM {
         return (!tube.samples.is_empty()).then_some(0);
     }
-    let extra = eighths_up(u64::from(extra_mm).saturating_mul(1000));
+    let extra = eighths(extra_mm);
     let excused_beyond =
         excuse.and_then(|excuse| excuse.distance(&tube.start, footprint, start, end, extra));
     for (number, sample) in tube.samples.iter().enumerate() {
@@ -142,13 +142,21 @@ fn touched_sample(
         if !sample.rect.grown(extra).touches(a, b) {
             continue;
         }
-        let now = footprint.segment_distance_squared(a, b);
-        match excused_beyond {
-            Some(before) if number < tube.nominal_from || not_nearer(now, before) => {}
-            _ => return Some(number),
+        let Some(before) = excused_beyond else {
+            return Some(number);
+        };
+        let excused = number < tube.nominal_from
+            || not_nearer(footprint.segment_distance_squared(a, b), before);
+        if !excused {
+            return Some(number);
         }
     }
     None
+}
+
+/// Whole millimetres in eighths.
+fn eighths(mm: u16) -> i32 {
+    i32::from(mm) << EIGHTH_BITS
 }
 
 /// What a robot that leaves rest is excused: points near the place where it rested.
@@ -186,7 +194,7 @@ impl Excuse {
         cloud
             .iter()
             .filter_map(|point| {
-                let extra = eighths_up(u64::from(point.extra_mm).saturating_mul(1000));
+                let extra = eighths(point.extra_mm);
                 let seen = tube.start.enter(point.point())?;
                 let inside = tube.start.rect.grown(extra).contains(seen);
                 let excused = self

@@ -131,5 +131,107 @@ fn a_known_point_in_a_sample_blocks() {
 #[kani::unwind(4)]
 #[kani::should_panic]
 fn a_known_point_in_a_sample_blocks_twin() {
-    known_point_blocks(one_sample(), 1);
+    known_point_blocks(one_sample(), 8);
+}
+
+fn second_point_blocks(sample: Sample, wrong: i64) {
+    let (before, point) = (any_cloud_point(), any_cloud_point());
+    kani::assume(before.extra_mm <= 1_200 && point.extra_mm <= 1_200);
+    // Neighbours are joined only within the join limit; 3 mm are rounding.
+    let apart = |a: i16, b: i16| i32::from(a).abs_diff(i32::from(b)) > 1_503;
+    kani::assume(
+        !before.joined || !(apart(before.x_mm, point.x_mm) || apart(before.y_mm, point.y_mm)),
+    );
+    let samples = [sample];
+    let inside = is_inside(&sample, &point, point.extra_mm, wrong);
+    let blocked = first_blocked(&swept(&samples), Rect::default(), &[before, point], None);
+    kani::cover!(inside && before.joined);
+    kani::cover!(blocked.is_none());
+    assert!(!inside || blocked.is_some());
+}
+
+/// A known point blocks whatever point stands before it in the scan, joined with it or not;
+/// every pair of points, joined ones at most 1.5 m apart, every sample that is not turned.
+//= spec/guard.md#guard-01
+//= type=proof
+//= spec/guard.md#guard-17
+//= type=proof
+#[kani::proof]
+#[kani::unwind(4)]
+#[kani::solver(cadical)]
+fn a_point_before_hides_nothing() {
+    second_point_blocks(any_sample(), 0);
+}
+
+#[kani::proof]
+#[kani::should_panic]
+fn a_point_before_hides_nothing_twin() {
+    second_point_blocks(one_sample(), 8);
+}
+
+fn second_sample_blocks(first: Sample, second: Sample, wrong: i64) {
+    let point = any_cloud_point();
+    kani::assume(point.extra_mm <= 1_200);
+    let samples = [first, second];
+    let inside = is_inside(&second, &point, point.extra_mm, wrong);
+    let blocked = first_blocked(&swept(&samples), Rect::default(), &[point], None);
+    kani::cover!(inside);
+    kani::cover!(blocked.is_none());
+    assert!(!inside || blocked.is_some());
+}
+
+/// A known point in a later sample blocks whatever sample stands before it; every point and every
+/// two samples that are not turned.
+//= spec/guard.md#guard-01
+//= type=proof
+#[kani::proof]
+#[kani::unwind(4)]
+#[kani::solver(cadical)]
+fn a_sample_before_hides_nothing() {
+    second_sample_blocks(any_sample(), any_sample(), 0);
+}
+
+#[kani::proof]
+#[kani::should_panic]
+fn a_sample_before_hides_nothing_twin() {
+    second_sample_blocks(one_sample(), one_sample(), 8);
+}
+
+fn wide_point_blocks(least: u16) {
+    let mut point = any_cloud_point();
+    kani::assume(point.extra_mm > least);
+    point.x_mm = 0;
+    point.y_mm = 0;
+    let samples = [any_sample()];
+    let blocked = first_blocked(&swept(&samples), Rect::default(), &[point], None);
+    kani::cover!(point.extra_mm == u16::MAX);
+    // The bounding box of a sample within 3 m of the origin is within reach of such a point.
+    kani::assume(samples[0].centre() == PointMm::default());
+    assert!(blocked == Some((0, 0)));
+}
+
+/// A point whose own inflation is beyond the cap blocks at once; every inflation above it.
+//= spec/guard.md#guard-18
+//= type=proof
+#[kani::proof]
+#[kani::unwind(4)]
+#[kani::solver(cadical)]
+fn a_point_beyond_the_cap_blocks() {
+    wide_point_blocks(1_200);
+}
+
+#[kani::proof]
+#[kani::should_panic]
+fn a_point_beyond_the_cap_blocks_twin() {
+    twin_of_wide();
+}
+
+/// The twin says that such a point never blocks.
+fn twin_of_wide() {
+    let mut point = any_cloud_point();
+    kani::assume(point.extra_mm > 1_200);
+    point.x_mm = 0;
+    point.y_mm = 0;
+    let samples = [one_sample()];
+    assert!(first_blocked(&swept(&samples), Rect::default(), &[point], None).is_none());
 }

@@ -26,7 +26,7 @@ struct Workshop<'a> {
     program: Option<Program>,
 }
 
-/// Runs `wanted` and returns their entries in the order in which they ended.
+/// Runs `wanted` and hands each entry to `keep` as soon as it is there.
 ///
 /// # Errors
 /// If the tools cannot be had or the harnesses do not build.
@@ -35,11 +35,12 @@ pub fn run_all(
     wanted: &[Check],
     folder: &Path,
     cap: Duration,
-) -> Result<Vec<Entry>, ProveError> {
+    keep: impl FnMut(Entry) -> Result<(), ProveError> + Send,
+) -> Result<(), ProveError> {
     std::fs::create_dir_all(folder).map_err(|error| ProveError::file(folder, error))?;
     let shop = Workshop::open(root, wanted, folder, cap)?;
     let next = AtomicUsize::new(0);
-    let done = Mutex::new(Vec::new());
+    let kept = Mutex::new((0, keep, Ok(())));
     thread::scope(|scope| {
         for _ in 0..workers() {
             scope.spawn(|| {
@@ -49,19 +50,22 @@ pub fn run_all(
                         return;
                     };
                     let entry = shop.entry(check);
-                    let Ok(mut entries) = done.lock() else {
+                    let Ok(mut kept) = kept.lock() else {
                         return;
                     };
-                    entries.push(entry);
-                    if let Some(entry) = entries.last() {
-                        report(entry, entries.len(), wanted.len());
+                    kept.0 += 1;
+                    report(&entry, kept.0, wanted.len());
+                    let written = (kept.1)(entry);
+                    if kept.2.is_ok() {
+                        kept.2 = written;
                     }
                 }
             });
         }
     });
-    done.into_inner()
-        .map_err(|_| ProveError::Words("a worker has panicked".into()))
+    kept.into_inner()
+        .map_err(|_| ProveError::Words("a worker has panicked".into()))?
+        .2
 }
 
 /// As many as there are cores, and no more than memory allows.
