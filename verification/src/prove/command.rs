@@ -49,6 +49,24 @@ pub fn checkout() -> PathBuf {
     own.parent().unwrap_or(own).to_path_buf()
 }
 
+/// The entries that hold, of the present sources: what a certificate may cite.
+///
+/// # Errors
+/// If sources or ledger cannot be read, or if one check is stale, missing, open or fails: a
+/// certificate cites the whole ledger or nothing.
+pub fn verified_fresh(root: &Path) -> Result<Vec<Entry>, ProveError> {
+    standings(root)?
+        .into_iter()
+        .map(|standing| match standing {
+            Standing::Fresh(entry) => Ok(entry),
+            Standing::Stale(entry) => Err(format!("{} is stale", entry.id)),
+            Standing::Open(entry) => Err(format!("{} does not hold: {}", entry.id, entry.twin)),
+            Standing::Missing(id) => Err(format!("{id} is missing")),
+        })
+        .collect::<Result<_, _>>()
+        .map_err(|words| ProveError::Words(format!("proof ledger: {words}")))
+}
+
 /// A check against what the ledger holds of it.
 #[derive(Clone, Debug)]
 pub enum Standing {
@@ -161,14 +179,14 @@ fn prove(root: &Path, options: &Options) -> Result<bool, ProveError> {
         .cloned()
         .collect();
     let folder = root.join("target/prove");
-    let entries = run_all(root, &wanted, &folder, options.cap)?;
     ledger
         .entries
         .retain(|entry| all.iter().any(|check| check.entry.id == entry.id));
-    for entry in entries {
+    run_all(root, &wanted, &folder, options.cap, |entry| {
         good &= entry.verdict == Verdict::Holds;
         ledger.put(entry);
-    }
+        ledger.write(&path)
+    })?;
     ledger.write(&path)?;
     let held = ledger
         .entries
