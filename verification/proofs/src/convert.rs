@@ -1,76 +1,69 @@
 //! Floats become integers: every bit pattern.
 
-use haltline::convert::{BeamEncoding, Round, angle, beam, duration, length, speed};
+use haltline::convert::{BeamEncoding, Round, angle, beam, duration, round};
 use haltline::input::Beam;
 use haltline::units::Length;
 
-/// Micro-units as the kernel computes them; the product is one rounding away from the exact one.
-fn micro(value: f64) -> f64 {
-    value * 1e6
-}
+const EXACT: f64 = 4_503_599_627_370_496.0;
 
-fn up(slack: f64) {
+fn outward(fault: bool) {
     let value: f64 = kani::any();
-    let product = micro(value);
-    let answer = length(value, Round::Up);
-    kani::cover!(answer.is_some() && product > 0.5);
-    kani::cover!(answer.is_none());
-    match answer {
-        Some(length) => {
-            let counts = f64::from(length.as_um());
-            assert!(counts >= product + slack && counts <= product + 1.0);
-        }
-        // NaN fails both comparisons.
-        None => assert!(!(product > -2_147_483_649.0 && product <= 2_147_483_647.0)),
+    let (up, down) = (round(value, Round::Up), round(value, Round::Down));
+    kani::cover!(up.is_some() && value > 0.5);
+    kani::cover!(up.is_none());
+    assert!(up.is_some() == (value > -EXACT && value < EXACT));
+    assert!(up.is_some() == down.is_some());
+    if let (Some(up), Some(down)) = (up, down) {
+        // Whole numbers below 2⁵³ are exact as floats.
+        let (high, low) = (up as f64, down as f64);
+        assert!(low <= value && value <= high && high <= low + 1.0);
+        assert!(!fault || high == low);
     }
 }
 
-/// A length that enlarges the tube rounds outward or is refused; every bit pattern of an f64.
+/// What enlarges rounds up, what promises rounds down, by less than one; what is not finite or too
+/// large is refused; every bit pattern of an f64.
 //= spec/guard.md#guard-21
 //= type=proof
 //= spec/input.md#input-09
 //= type=proof
 #[kani::proof]
 #[kani::solver(cadical)]
-fn lengths_round_up_or_are_refused() {
-    up(0.0);
+fn rounding_is_outward_or_refused() {
+    outward(false);
 }
 
 #[kani::proof]
 #[kani::should_panic]
-fn lengths_round_up_or_are_refused_twin() {
-    up(0.25);
+fn rounding_is_outward_or_refused_twin() {
+    outward(true);
 }
 
-fn down(slack: f64) {
+fn nearest(slack: f64) {
     let value: f64 = kani::any();
-    let product = micro(value);
-    let answer = speed(value, Round::Down);
-    kani::cover!(answer.is_some() && product < -0.5);
-    match answer {
-        Some(speed) => {
-            let counts = f64::from(speed.as_um_per_s());
-            assert!(counts + slack <= product && counts >= product - 1.0);
-        }
-        None => assert!(!(product >= -2_147_483_648.0 && product < 2_147_483_648.0)),
+    kani::assume(value > -1e9 && value < 1e9);
+    let rounded = round(value, Round::Nearest);
+    kani::cover!(rounded.is_some());
+    assert!(rounded.is_some());
+    if let Some(rounded) = rounded {
+        let error = rounded as f64 - value;
+        assert!(error <= slack && error >= -slack);
     }
 }
 
-/// A speed that promises something rounds down or is refused; every bit pattern of an f64.
-//= spec/limit.md#limit-01
-//= type=proof
-//= spec/input.md#input-09
+/// A measured value is rounded by at most 0.500001 counts; every f64 within 10⁹ counts.
+//= spec/guard.md#guard-21
 //= type=proof
 #[kani::proof]
 #[kani::solver(cadical)]
-fn speeds_round_down_or_are_refused() {
-    down(0.0);
+fn measured_values_round_to_nearest() {
+    nearest(0.500_001);
 }
 
 #[kani::proof]
 #[kani::should_panic]
-fn speeds_round_down_or_are_refused_twin() {
-    down(0.25);
+fn measured_values_round_to_nearest_twin() {
+    nearest(0.49);
 }
 
 fn total_durations(fault: bool) {
@@ -78,7 +71,7 @@ fn total_durations(fault: bool) {
     let answer = duration(value, Round::Up);
     kani::cover!(answer.is_some());
     if let Some(span) = answer {
-        assert!(micro(value) > -1.0 && (!fault || span.as_us() > 0));
+        assert!(value > -1e-6 && (!fault || span.as_us() > 0));
     }
     let turned = angle(value);
     kani::cover!(turned.is_some());
@@ -115,24 +108,19 @@ fn classified(fault: bool) {
     kani::cover!(answer == Beam::TooNear);
     kani::cover!(answer == Beam::NoReturn);
     kani::cover!(answer == Beam::Invalid);
-    let metres = f64::from(range);
     match answer {
-        Beam::Hit(mm) => {
-            let error = f64::from(mm) - metres * 1000.0;
-            assert!(error <= 0.501 && error >= -0.501);
-            assert!(metres >= 0.02 - 1e-6 && metres <= 30.0 + 1e-6 && !fault);
-        }
-        Beam::TooNear => assert!(metres < 0.02 + 1e-6),
-        Beam::NoReturn => assert!(metres > 30.0 - 1e-6 || metres == 0.0 || range.abs() < 1e-30),
-        Beam::Invalid => assert!(metres.is_nan() || metres < 1e-6 || metres > 1e6),
+        Beam::Hit(mm) => assert!(mm >= 20 && mm <= 30_000 && range > 0.0 && !fault),
+        Beam::TooNear => assert!(range < 0.021),
+        Beam::NoReturn => assert!(range > 29.9 || range == 0.0),
+        Beam::Invalid => assert!(range.is_nan() || range <= 0.0 || range > 1e6),
     }
     // Bad numbers are never free space, but for the encodings that say so.
     assert!(!range.is_nan() || answer == Beam::Invalid);
     assert!(!(range < -1e-6) || answer != Beam::NoReturn);
 }
 
-/// Every bit pattern of a range is one of hit, no return, too near and invalid, a hit within half a
-/// millimetre (range limits 0.02 m and 30 m).
+/// Every bit pattern of a range is one of hit, no return, too near and invalid, and hits
+/// lie within the scanner's range (0.02 m to 30 m).
 //= spec/input.md#input-01
 //= type=proof
 #[kani::proof]

@@ -16,6 +16,7 @@ mod braking;
 mod intervals;
 mod kernel;
 mod shapes;
+mod tube;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -34,6 +35,7 @@ pub fn all() -> Vec<Enumeration> {
     all.extend(braking::all());
     all.extend(shapes::all());
     all.extend(intervals::all());
+    all.extend(tube::all());
     all.extend(kernel::all());
     all
 }
