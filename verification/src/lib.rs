@@ -6,6 +6,7 @@
 //! *Proofs*.
 
 pub mod enumerate;
+pub mod faults;
 pub mod image;
 pub mod prove;
 pub mod timing;
