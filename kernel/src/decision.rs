@@ -31,6 +31,8 @@ pub enum Reason {
     GuardLimited,
     /// The guard refused every speed on the list; see [`Decision::verdict`].
     GuardBlocked,
+    /// The planner finds no admissible motion towards its goal.
+    PathBlocked,
     /// The desired motion exceeds a speed limit and was scaled on its curvature.
     LimitExceeded,
     /// The desired motion reverses although the rear is not watched.

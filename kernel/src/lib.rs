@@ -36,3 +36,4 @@ pub mod window;
 
 pub use checked::ConfigError;
 pub use kernel::Kernel;
+pub use kernel::navigate::Navigator;

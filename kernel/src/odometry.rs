@@ -3,7 +3,7 @@
 //! Never extrapolates: a time the odometry does not cover has no pose.
 
 use crate::arith::{MICRO, magnitude, narrow};
-use crate::input::{Odometry, Twist};
+use crate::input::{Odometry, Pose, Twist};
 use crate::time::Instant;
 use crate::units::BinaryAngle;
 
@@ -155,6 +155,17 @@ impl Track {
             later = earlier;
         }
         (later.stamp == time).then(|| self.local(later))
+    }
+
+    /// The pose at `time` in the odometry frame, interpolated; `None` outside the recorded span.
+    #[must_use]
+    pub fn world_pose_at(&self, time: Instant) -> Option<Pose> {
+        let local = self.pose_at(time)?;
+        Some(Pose {
+            x_um: self.anchor_x_um.saturating_add(i64::from(local.x_um)),
+            y_um: self.anchor_y_um.saturating_add(i64::from(local.y_um)),
+            heading: local.heading,
+        })
     }
 
     fn local(&self, odometry: &Odometry) -> LocalPose {

@@ -11,6 +11,8 @@ use super::window::{DynamicWindow, Interval};
 
 /// Candidates are at least this part of all sampled curvatures apart.
 const APART: f64 = 0.05;
+/// Turns smaller than this are not worth it even where nothing else is possible, rad.
+const ALIGNED_LEAST_RAD: f64 = 0.005;
 /// Turn rates below this are not worth it, rad/s.
 const TURN_LEAST_RADPS: f64 = 0.01;
 
@@ -62,9 +64,14 @@ impl Choice<'_> {
         if aim != Aim::Position && self.window.linear.low > 0.0 {
             return Plan::without_candidates(Outcome::Unsuitable);
         }
-        let mut best: [Option<Best>; LANES] = [None; LANES];
-        for (index, (slot, lane)) in best.iter_mut().zip(self.lanes).enumerate() {
-            *slot = self.best_of(index, lane, aim);
+        let enough = match aim {
+            Aim::Position => self.situation.tuning.aligned_rad,
+            Aim::Heading(_) => 0.0,
+        };
+        let mut best = self.best(aim, enough);
+        if best.iter().all(Option::is_none) {
+            // Where no way leads on, a small turn towards the goal may open one.
+            best = self.best(aim, enough.min(ALIGNED_LEAST_RAD));
         }
         let plan = list(&mut best);
         if plan.count == 0 {
@@ -73,8 +80,17 @@ impl Choice<'_> {
         plan
     }
 
+    /// The best sample of each lane; turns on the spot by more than `enough`.
+    fn best(&self, aim: Aim, enough: f64) -> [Option<Best>; LANES] {
+        let mut best = [None; LANES];
+        for (index, (slot, lane)) in best.iter_mut().zip(self.lanes).enumerate() {
+            *slot = self.best_of(index, lane, aim, enough);
+        }
+        best
+    }
+
     /// The rates of `lane` that are worth sampling.
-    fn rates(&self, lane: &Lane, aim: Aim) -> Option<Interval> {
+    fn rates(&self, lane: &Lane, aim: Aim, enough: f64) -> Option<Interval> {
         let limits = &self.situation.limits;
         let tuning = &self.situation.tuning;
         let bearing = self.sighting.bearing_rad;
@@ -82,9 +98,9 @@ impl Choice<'_> {
             (Course::Arc { .. }, Aim::Heading(_)) => None,
             (Course::Arc { .. }, Aim::Position) => Some(lane.rates.intersection(self.speeds)),
             (Course::Spot(turn), aim) => {
-                let (angle, enough) = match aim {
-                    Aim::Position => (bearing, tuning.aligned_rad),
-                    Aim::Heading(angle) => (angle, 0.0),
+                let angle = match aim {
+                    Aim::Position => bearing,
+                    Aim::Heading(angle) => angle,
                 };
                 let towards = if turn == Turn::Left { angle } else { -angle };
                 let most = rate_for(
@@ -129,13 +145,30 @@ impl Choice<'_> {
         Some(eased).filter(Interval::is_some)
     }
 
-    fn best_of(&self, index: usize, lane: &Lane, aim: Aim) -> Option<Best> {
+    /// How much of the look-ahead (or the way to the goal) `lane` leaves open at creeping speed, 0–1.
+    fn open(&self, lane: &Lane, ahead: Clearance) -> f64 {
+        let Clearance::Contact(travel) = ahead else {
+            return 1.0;
+        };
+        let Course::Arc { .. } = lane.course else {
+            return 1.0;
+        };
+        let reach = self.situation.lookahead_m().min(self.sighting.distance_m);
+        if travel < reach { travel / reach } else { 1.0 }
+    }
+
+    fn best_of(&self, index: usize, lane: &Lane, aim: Aim, enough: f64) -> Option<Best> {
         if !lane.rates.is_some() {
             return None;
         }
         let clearance = self.survey.firm.clearance(index, lane);
         let ahead = self.survey.ahead.clearance(index, lane);
-        let rates = self.eased(lane, self.rates(lane, aim)?, clearance.nearer(ahead))?;
+        let rates = self.eased(
+            lane,
+            self.rates(lane, aim, enough)?,
+            clearance.nearer(ahead),
+        )?;
+        let open = self.open(lane, ahead);
         let mut found: Option<Best> = None;
         for step in 0..SPEEDS {
             let part = f64::from(u8::try_from(step).unwrap_or(0)) / 10.0;
@@ -154,6 +187,7 @@ impl Choice<'_> {
                     self.sighting,
                     (index, lane),
                     rate,
+                    open,
                 ),
                 clearance,
             };
@@ -173,7 +207,24 @@ impl Choice<'_> {
     /// V_a: whether the robot can stop within `clearance`, whatever it was told before (Loh 4.5).
     fn is_admissible(&self, velocity: Velocity, clearance: Clearance) -> bool {
         let moves = velocity.linear_mps > 0.0 || velocity.angular_radps.abs() > 0.0;
-        moves && clearance.allows(worst_stop(self.situation, velocity).travel)
+        let start = if self.situation.is_at_rest() {
+            self.worth_starting(velocity)
+        } else {
+            0.0
+        };
+        moves && clearance.allows(worst_stop(self.situation, velocity).travel + start)
+    }
+
+    /// How much more than a stop must be free for it to be worth leaving rest, m (rad on the spot).
+    ///
+    /// Without it a robot before a wall would go on in steps of a millimetre.
+    fn worth_starting(&self, velocity: Velocity) -> f64 {
+        let least = self.situation.tuning.start_m;
+        if velocity.linear_mps > 0.0 {
+            least.min(self.sighting.distance_m)
+        } else {
+            (least / self.situation.footprint.corner_m()).min(self.sighting.bearing_rad.abs())
+        }
     }
 
     /// The point that ends the way towards the aim.

@@ -3,9 +3,10 @@
 //! Skips a point only where it provably cannot be the first contact, so that the result is
 //! the plain minimum over [`super::arc_distance`], whatever the order of the points.
 
-use super::arc::{Clearance, Track, line_travel, turn_key};
+use super::arc::{Clearance, Course, Track, Turn, line_travel, turn_key};
 use super::footprint::{Footprint, Point};
 use super::lanes::{LANES, Lane};
+use super::survey::along;
 use super::types::{Obstacle, Situation, Velocity};
 
 /// Lanes padded to a multiple of what vector units take.
@@ -234,6 +235,7 @@ fn contact_key(situation: &Situation<'_>, lane: &Lane, swept: &Swept, obstacle: 
         if outside <= least
             || approaches(lane.direction(), &reached, point, 0.0)
             || possible.any(|motion| approaches(motion, &reached, point, SLOWLY_MPS))
+            || (!situation.is_at_rest() && catches_up(situation, lane, swept, obstacle))
         {
             return 0.0;
         }
@@ -246,6 +248,32 @@ fn contact_key(situation: &Situation<'_>, lane: &Lane, swept: &Swept, obstacle: 
         Track::Line { sense } => line_travel(&rect, sense, point),
         Track::Circle(circle) => turn_key(&rect, circle, point),
     }
+}
+
+/// Whether the margin, which grows along the way, reaches a point that the robot leaves aside.
+fn catches_up(situation: &Situation<'_>, lane: &Lane, swept: &Swept, obstacle: Obstacle) -> bool {
+    let end_m = swept.rect.front_m - situation.footprint.front_m;
+    [0.5, 1.0].into_iter().any(|part| {
+        let travel = swept.horizon * part;
+        let (place, heading) = match lane.course {
+            Course::Arc {
+                curvature_per_m, ..
+            } => along(curvature_per_m, travel),
+            Course::Spot(Turn::Left) => ([0.0; 2], travel),
+            Course::Spot(Turn::Right) => ([0.0; 2], -travel),
+        };
+        let grown = swept.start_m + (end_m - swept.start_m) * part + obstacle.inflation_m;
+        let seen = seen_from(place, heading, obstacle.position);
+        situation.footprint.inflated(grown).contains(seen)
+    })
+}
+
+/// `point` in the frame of a robot at `place`.
+fn seen_from([x, y]: Point, heading: f64, point: Point) -> Point {
+    let [to_x, to_y] = point;
+    let (dx, dy) = (to_x - x, to_y - y);
+    let (sin, cos) = libm::sincos(heading);
+    [cos * dx + sin * dy, cos * dy - sin * dx]
 }
 
 /// Whether `point`, on the edge of `rect`, moves inward faster than `slowly_mps` when the robot

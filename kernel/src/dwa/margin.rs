@@ -27,6 +27,11 @@ pub struct Margin {
     pub turn_tolerance_radps: f64,
     /// Speed bound of the obstacles, m/s.
     pub obstacle_speed_mps: f64,
+    /// Least inflation that a point has once the robot has come near to it, m: what slowing down
+    /// and scoring look ahead with. Stopping in time respects each point's own inflation.
+    pub near_m: f64,
+    /// Whether speed and turn rate may come to rest each by its own ramp.
+    pub separate_ramps: bool,
 }
 
 /// How much the outline grows for one command, m.
@@ -108,17 +113,74 @@ struct Spread {
     may_roll_back: bool,
 }
 
+/// The motions that a hull must contain, at most: all of them, or the corners of their box.
+struct Hull<'a> {
+    situation: &'a Situation<'a>,
+    velocity: Velocity,
+    /// Where the ramps are separate.
+    corners: Option<[Velocity; 4]>,
+}
+
+impl<'a> Hull<'a> {
+    fn of(situation: &'a Situation<'_>, velocity: Velocity) -> Self {
+        let mut hull = Self {
+            situation,
+            velocity,
+            corners: None,
+        };
+        if situation.margin.separate_ramps && situation.limits.curvature_max_per_m.is_none() {
+            let span = |rate: fn(Velocity) -> f64| {
+                let start = rate(velocity);
+                hull.motions()
+                    .map(rate)
+                    .fold((start, start), |(low, high), one| {
+                        (one.min(low), one.max(high))
+                    })
+            };
+            let (slow, fast) = span(|one| one.linear_mps);
+            let (right, left) = span(|one| one.angular_radps);
+            hull.corners = Some(
+                [(slow, right), (slow, left), (fast, right), (fast, left)].map(
+                    |(linear_mps, angular_radps)| Velocity {
+                        linear_mps,
+                        angular_radps,
+                    },
+                ),
+            );
+        }
+        hull
+    }
+
+    fn motions(&self) -> impl Iterator<Item = Velocity> {
+        let corners = self.corners.iter().flatten().copied();
+        let plain = self.corners.is_none().then(|| {
+            let own = core::iter::once(self.velocity);
+            self.situation.possible().chain(own)
+        });
+        corners.chain(plain.into_iter().flatten())
+    }
+}
+
 impl Spread {
     fn of(situation: &Situation<'_>, velocity: Velocity) -> Self {
-        let all = || situation.possible().chain(core::iter::once(velocity));
-        let fastest = all().map(|one| one.linear_mps).fold(0.0, f64::max);
-        let slowest = all().map(|one| one.linear_mps).fold(fastest, f64::min);
-        let own = velocity.angular_radps / velocity.linear_mps.max(SPEED_LEAST_MPS);
+        let hull = Hull::of(situation, velocity);
+        let fastest = hull.motions().map(|one| one.linear_mps).fold(0.0, f64::max);
+        let slowest = hull
+            .motions()
+            .map(|one| one.linear_mps)
+            .fold(fastest, f64::min);
+        // Separate ramps may straighten the path.
+        let own = if hull.corners.is_some() {
+            0.0
+        } else {
+            velocity.angular_radps / velocity.linear_mps.max(SPEED_LEAST_MPS)
+        };
         let mut curvatures = Interval {
             low: own,
             high: own,
         };
-        for one in all().filter(|one| one.linear_mps >= (fastest / 2.0).max(SPEED_LEAST_MPS)) {
+        let quick = (fastest / 2.0).max(SPEED_LEAST_MPS);
+        for one in hull.motions().filter(|one| one.linear_mps >= quick) {
             let curvature = one.angular_radps / one.linear_mps;
             curvatures.low = curvatures.low.min(curvature);
             curvatures.high = curvatures.high.max(curvature);
@@ -130,7 +192,7 @@ impl Spread {
         };
         Self {
             curvatures,
-            residual_radps: all().map(unexplained).fold(0.0, f64::max),
+            residual_radps: hull.motions().map(unexplained).fold(0.0, f64::max),
             may_roll_back: slowest < situation.margin.speed_tolerance_mps,
         }
     }
@@ -143,6 +205,7 @@ impl Margin {
             self.speed_tolerance_mps,
             self.turn_tolerance_radps,
             self.obstacle_speed_mps,
+            self.near_m,
         ]
         .iter()
         .all(|value| value.is_finite() && *value >= 0.0)
@@ -174,12 +237,23 @@ impl Margin {
         } else {
             0.0
         };
+        // Separate ramps: what the robot may turn on after v has come to rest.
+        let rate = situation
+            .fastest_turn_radps()
+            .max(velocity.angular_radps.abs())
+            + slip;
+        let after_turn = if self.separate_ramps && limits.curvature_max_per_m.is_none() {
+            rate * rate / (2.0 * limits.angular_braking_radps2)
+        } else {
+            0.0
+        };
         let start_m = self.fixed_m
             + self.obstacle_speed_mps * time_s
             + rolling_back
-            + slip * time_s * corner
+            + (slip * time_s + after_turn) * corner
             + step * (1.0 + bend * corner) / 2.0;
-        let grown = slip * time_s + (high - low) * (path / 2.0 + corner) + GUARD_CHORDS;
+        let grown =
+            slip * time_s + after_turn + (high - low) * (path / 2.0 + corner) + GUARD_CHORDS;
         Inflation {
             start_m,
             end_m: start_m + path * grown,

@@ -55,7 +55,7 @@ fn head(situation: &Situation<'_>, sighting: Sighting, lane: &Lane, travel: f64)
         // It can stop turning when it faces the goal.
         None => (sighting.bearing_rad.abs() - travel).max(0.0),
     };
-    (PI - off) / PI
+    1.0 - libm::sqrt(off / PI)
 }
 
 /// `clear` (A.4, corrected): distance to the nearest point in [0, 1], without orientation.
@@ -64,10 +64,13 @@ fn head(situation: &Situation<'_>, sighting: Sighting, lane: &Lane, travel: f64)
 /// the path nearness counts less, or the robot would rather turn round than enter a gap.
 pub(super) fn clear(situation: &Situation<'_>, near_m: [f64; PLACES]) -> f64 {
     let inscribed = situation.footprint.inscribed_m();
+    let turning = (situation.footprint.corner_m() - inscribed).max(1e-6);
     let [first, ..] = PARTS;
     near_m.iter().zip(PARTS).fold(1.0, |least, (near, part)| {
-        let spare = (near - inscribed) / situation.tuning.clearance_range_m;
-        (spare.max(0.0) + part - first).min(least)
+        let spare = (near - inscribed).max(0.0);
+        let tight = (spare / turning).min(1.0);
+        let wide = (spare - turning).max(0.0) / situation.tuning.clearance_range_m;
+        (0.5 * tight + 0.5 * wide + part - first).min(least)
     })
 }
 
@@ -84,6 +87,7 @@ pub(super) fn score(
     sighting: Sighting,
     (index, lane): (usize, &Lane),
     rate: f64,
+    open: f64,
 ) -> f64 {
     let tuning = &situation.tuning;
     // Not cut at the first contact: a path into a wall must not look good for ending early,
@@ -96,7 +100,7 @@ pub(super) fn score(
     };
     let stops = situation.goal.arrival == Arrival::Stop;
     let near_goal = stops && sighting.distance_m < tuning.goal_near_m;
-    tuning.heading_weight * head(situation, sighting, lane, travel)
+    tuning.heading_weight * open * head(situation, sighting, lane, travel)
         + tuning.clearance_weight * clear(situation, near_m)
         + tuning.speed_weight * vel(speed, situation.limits.speed_mps, near_goal)
 }

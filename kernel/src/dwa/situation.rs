@@ -1,6 +1,6 @@
 //! What follows from a situation alone: whether it can be planned on, and what may be moving.
 
-use super::types::{Situation, Velocity};
+use super::types::{Situation, Tuning, Velocity};
 
 /// Rates up to this count as rest where the drive has no tolerance, m/s and rad/s.
 const REST: f64 = 1e-3;
@@ -9,6 +9,11 @@ impl Situation<'_> {
     /// Every motion that may be executing: the command in force and what is in flight.
     pub(super) fn possible(&self) -> impl Iterator<Item = Velocity> {
         core::iter::once(self.velocity).chain(self.in_flight.iter().copied())
+    }
+
+    /// How far ahead heading and clearance are judged at full speed, m.
+    pub(super) fn lookahead_m(&self) -> f64 {
+        self.tuning.lookahead_s * self.limits.speed_mps
     }
 
     /// The largest speed among them, m/s.
@@ -32,7 +37,7 @@ impl Situation<'_> {
     /// Whether every number is finite and within its range.
     #[must_use]
     pub fn is_valid(&self) -> bool {
-        let (limits, tuning, goal) = (&self.limits, &self.tuning, &self.goal);
+        let (limits, goal) = (&self.limits, &self.goal);
         let positive = [
             limits.speed_mps,
             limits.acceleration_mps2,
@@ -43,21 +48,8 @@ impl Situation<'_> {
             limits.period_s,
             limits.reaction_s,
             limits.curvature_max_per_m.unwrap_or(1.0),
-            tuning.lookahead_s,
-            tuning.clearance_range_m,
-            tuning.comfort,
             goal.position_tolerance_m,
             goal.heading_tolerance_rad,
-        ];
-        let not_negative = [
-            tuning.heading_weight,
-            tuning.clearance_weight,
-            tuning.speed_weight,
-            tuning.goal_near_m,
-            tuning.object_near_m,
-            tuning.creep_mps,
-            tuning.turn_first_rad,
-            tuning.aligned_rad,
         ];
         let [goal_x, goal_y] = goal.position;
         let finite = [goal_x, goal_y, goal.heading_rad.unwrap_or(0.0)];
@@ -67,12 +59,36 @@ impl Situation<'_> {
             && positive
                 .iter()
                 .all(|value| value.is_finite() && *value > 0.0)
+            && finite.iter().all(|value| value.is_finite())
+            && self.tuning.is_valid()
+            && self.velocity.is_finite()
+            && self.in_flight.iter().all(Velocity::is_finite)
+    }
+}
+
+impl Tuning {
+    /// Whether every preference is finite and within its range.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        let positive = [self.lookahead_s, self.clearance_range_m, self.comfort];
+        let not_negative = [
+            self.heading_weight,
+            self.clearance_weight,
+            self.speed_weight,
+            self.goal_near_m,
+            self.object_near_m,
+            self.creep_mps,
+            self.start_m,
+            self.turn_first_rad,
+            self.aligned_rad,
+        ];
+        // Written so that NaN fails.
+        positive
+            .iter()
+            .all(|value| value.is_finite() && *value > 0.0)
             && not_negative
                 .iter()
                 .all(|value| value.is_finite() && *value >= 0.0)
-            && finite.iter().all(|value| value.is_finite())
-            && tuning.comfort <= 1.0
-            && self.velocity.is_finite()
-            && self.in_flight.iter().all(Velocity::is_finite)
+            && self.comfort <= 1.0
     }
 }

@@ -75,7 +75,7 @@ impl Survey {
                 farthest = farthest.max(travel);
             }
         }
-        let range = situation.footprint.inscribed_m() + situation.tuning.clearance_range_m;
+        let range = situation.footprint.corner_m() + situation.tuning.clearance_range_m;
         self.reach_m = farthest + range;
     }
 
@@ -95,7 +95,11 @@ impl Survey {
             self.approach(point);
         }
         self.firm.add(situation, lanes, obstacle);
-        self.ahead.add(situation, lanes, obstacle);
+        let near = Obstacle {
+            inflation_m: obstacle.inflation_m.min(situation.margin.near_m),
+            ..obstacle
+        };
+        self.ahead.add(situation, lanes, near);
     }
 
     fn approach(&mut self, [x, y]: Point) {

@@ -127,6 +127,8 @@ pub struct Tuning {
     pub comfort: f64,
     /// Speed below which driving is not worth it, m/s.
     pub creep_mps: f64,
+    /// Free way beyond its stop that makes it worth to leave rest, m.
+    pub start_m: f64,
     /// Bearing of the goal beyond which the robot stops and turns on the spot, rad.
     pub turn_first_rad: f64,
     /// Bearing of the goal below which turning on the spot is not worth it, rad.
@@ -146,6 +148,7 @@ impl Default for Tuning {
             object_near_m: 0.3,
             comfort: 0.7,
             creep_mps: 0.05,
+            start_m: 0.03,
             turn_first_rad: 1.05,
             aligned_rad: 0.05,
         }

@@ -55,7 +55,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     fn forget_scans(&mut self) {
         for channel in &mut self.channels {
             channel.accepted = None;
-            channel.pending_stamp = None;
+            channel.pending = false;
         }
     }
 
@@ -124,10 +124,11 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         );
         channel.newest = Some(scan.stamp);
         channel.note_content(scan.beams, self.track.odometer());
-        if !self.accept(scan.scanner, &setup, scan.beams, scan.stamp)
+        channel.hold(scan.beams, scan.stamp);
+        if self.accept(scan.scanner, &setup, scan.beams, scan.stamp)
             && let Some(channel) = self.channels.get_mut(scan.scanner)
         {
-            channel.hold(scan.beams, scan.stamp);
+            channel.pending = false;
         }
     }
 
@@ -162,16 +163,14 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             let Some(channel) = self.channels.get(scanner) else {
                 continue;
             };
-            let Some(stamp) = channel.pending_stamp else {
+            let Some(stamp) = channel.beams_stamp.filter(|_| channel.pending) else {
                 continue;
             };
-            let superseded = channel.accepted.is_some_and(|accepted| accepted >= stamp);
-            let beams = channel.pending;
+            let beams = channel.beams;
             let count = usize::from(setup.beams).min(B);
-            let placed = superseded
-                || self.accept(scanner, &setup, beams.get(..count).unwrap_or(&[]), stamp);
+            let placed = self.accept(scanner, &setup, beams.get(..count).unwrap_or(&[]), stamp);
             if let (true, Some(channel)) = (placed, self.channels.get_mut(scanner)) {
-                channel.pending_stamp = None;
+                channel.pending = false;
             }
         }
     }
@@ -302,9 +301,10 @@ impl<const B: usize> Channel<B> {
 
     /// Keeps a scan until the odometry covers it; a newer one replaces it.
     fn hold(&mut self, beams: &[Beam], stamp: Instant) {
-        for (slot, &beam) in self.pending.iter_mut().zip(beams) {
+        for (slot, &beam) in self.beams.iter_mut().zip(beams) {
             *slot = beam;
         }
-        self.pending_stamp = Some(stamp);
+        self.beams_stamp = Some(stamp);
+        self.pending = true;
     }
 }

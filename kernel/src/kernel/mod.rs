@@ -1,11 +1,12 @@
 //! One tick: inputs in, decision out. The only module that sees all the others.
 //!
 //! `step` is total: whatever comes in, it answers with a set point the robot may
-//! execute and the reason for it. In `shield` mode, which this is, somebody else
-//! proposes the motion.
+//! execute and the reason for it. [`Kernel`] is the shield: somebody else proposes the
+//! motion. [`navigate::Navigator`] proposes its own and hands it to the same judge.
 
 mod ingest;
 mod motion;
+pub mod navigate;
 
 use crate::checked::{ConfigError, KernelConfig};
 use crate::config::Config;
@@ -60,9 +61,11 @@ struct Channel<const B: usize> {
     newest: Option<Instant>,
     /// Stamp of the newest scan in memory.
     accepted: Option<Instant>,
-    /// A scan that the odometry does not cover yet.
-    pending: [Beam; B],
-    pending_stamp: Option<Instant>,
+    /// The newest scan.
+    beams: [Beam; B],
+    beams_stamp: Option<Instant>,
+    /// It waits for odometry that covers it.
+    pending: bool,
     /// Content of the newest scan and the odometer when that content was first seen.
     fingerprint: u64,
     fingerprint_since: crate::odometry::Odometer,
@@ -74,13 +77,25 @@ impl<const B: usize> Default for Channel<B> {
         Self {
             newest: None,
             accepted: None,
-            pending: [Beam::Invalid; B],
-            pending_stamp: None,
+            beams: [Beam::Invalid; B],
+            beams_stamp: None,
+            pending: false,
             fingerprint: 0,
             fingerprint_since: crate::odometry::Odometer::default(),
             frozen: false,
         }
     }
+}
+
+/// What a tick knows of time and hazards before it decides.
+#[derive(Clone, Copy, Debug)]
+struct Tick {
+    now: Instant,
+    /// Since the last tick.
+    elapsed: Duration,
+    /// When the decision ends.
+    expires: Instant,
+    hazard: Reason,
 }
 
 /// The most restrictive reason seen so far in a tick.
@@ -132,6 +147,12 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     /// # Source
     /// spec/model.md; spec/ GUARD, BRAKE, LIMIT, ZONE, FRESH, SILENT, LATCH, INPUT, MEMORY.
     pub fn step(&mut self, inputs: &Inputs<'_>, now: Instant) -> Decision {
+        let tick = self.perceive(inputs, now);
+        self.decide(&tick, Self::drive)
+    }
+
+    /// Takes in everything that arrived and advances the stop logic.
+    fn perceive(&mut self, inputs: &Inputs<'_>, now: Instant) -> Tick {
         let mut hazard = Worst(Reason::None);
         // The caller's clock, even if it ran backwards: nobody may hold a set point for longer.
         let timing = &self.config.config().timing;
@@ -153,7 +174,12 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             at_rest: self.is_at_rest(),
         };
         self.advance_stop(&events);
-        self.decide(hazard.0, now, elapsed, expires)
+        Tick {
+            now,
+            elapsed,
+            expires,
+            hazard: hazard.0,
+        }
     }
 
     /// Checks the clock; returns the time to work with and the step since the last tick.
@@ -201,14 +227,10 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         }
     }
 
-    /// Turns the state of the tick into a decision and records what is sent.
-    fn decide(
-        &mut self,
-        hazard: Reason,
-        now: Instant,
-        elapsed: Duration,
-        expires: Instant,
-    ) -> Decision {
+    /// Turns the state of the tick into a decision and records what is sent; `drive` is asked
+    /// only while motion is allowed.
+    fn decide(&mut self, tick: &Tick, drive: impl FnOnce(&mut Self, &Tick) -> Outcome) -> Decision {
+        let (hazard, elapsed) = (tick.hazard, tick.elapsed);
         let outcome = match self.stop.mode {
             Mode::Latched => self.braking(
                 Action::EmergencyStop,
@@ -224,9 +246,9 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
                 hazard.max(Reason::WaitingForRelease),
                 elapsed,
             ),
-            Mode::Running => self.drive(now, elapsed),
+            Mode::Running => drive(self, tick),
         };
-        self.pipeline.push(now, outcome.vertex);
+        self.pipeline.push(tick.now, outcome.vertex);
         Decision {
             action: outcome.action,
             setpoint: window::setpoint(self.config.config(), outcome.vertex),
@@ -236,7 +258,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
                 Mode::Protective => StopStatus::Protective,
                 Mode::Latched => StopStatus::Latched,
             },
-            expires,
+            expires: tick.expires,
             verdict: outcome.verdict,
             factor_permille: outcome.factor_permille,
         }

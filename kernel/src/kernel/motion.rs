@@ -1,6 +1,6 @@
 //! From a desired motion to a certified one: the speed list, the hull, the ramp.
 
-use super::{Departure, Kernel, Outcome};
+use super::{Departure, Kernel, Outcome, Tick};
 use crate::config::Kinematics;
 use crate::decision::{Action, Reason};
 use crate::guard::check::Excuse;
@@ -69,7 +69,8 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     }
 
     /// Certifies the fastest motion of the list towards the desired one, or brakes.
-    pub(super) fn drive(&mut self, now: Instant, elapsed: Duration) -> Outcome {
+    pub(super) fn drive(&mut self, tick: &Tick) -> Outcome {
+        let (now, elapsed) = (tick.now, tick.elapsed);
         let desired = self
             .command_reason(now)
             .and_then(|command| window::desired(self.config.config(), &command.motion));
@@ -128,7 +129,7 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         (moves && window::admissible(config, reference, candidate, step)).then_some(candidate)
     }
 
-    fn accepted(
+    pub(super) fn accepted(
         &mut self,
         vertex: Vertex,
         factor_permille: u16,
@@ -191,14 +192,14 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
 
     /// How far back commands may still determine the motion: a steering sensor makes the
     /// sweep of the wheels unnecessary.
-    fn window(&self, odometry: &Odometry) -> Duration {
+    pub(super) fn window(&self, odometry: &Odometry) -> Duration {
         match odometry.steering {
             Some(_) => self.config.config().timing.actuation_latency,
             None => self.config.pipeline(),
         }
     }
 
-    fn judge(&self, odometry: &Odometry, candidate: Vertex, now: Instant) -> Verdict {
+    pub(super) fn judge(&self, odometry: &Odometry, candidate: Vertex, now: Instant) -> Verdict {
         let age = now.since(odometry.stamp).unwrap_or_default();
         let scene = Scene {
             memory: &self.memory,

@@ -4,10 +4,11 @@ use haltline::decision::Reason;
 use serde::{Deserialize, Deserializer, de::Error};
 
 /// All reasons of the kernel, in its order.
-const REASONS: [Reason; 31] = [
+const REASONS: [Reason; 32] = [
     Reason::None,
     Reason::GuardLimited,
     Reason::GuardBlocked,
+    Reason::PathBlocked,
     Reason::LimitExceeded,
     Reason::ReverseNotAllowed,
     Reason::EmptyWindow,

@@ -59,6 +59,8 @@ fn seekur(velocity: Velocity, goal: Point) -> Situation<'static> {
             speed_tolerance_mps: 0.01,
             turn_tolerance_radps: 0.01,
             obstacle_speed_mps: 0.0,
+            near_m: 0.05,
+            separate_ramps: false,
         },
         tuning: Tuning::default(),
         velocity,

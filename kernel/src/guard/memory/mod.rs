@@ -28,11 +28,11 @@ use crate::units::BinaryAngle;
 /// Rounding of a stored point against a beam, mm.
 const PLACE_ROUNDING_MM: u64 = 3;
 /// Points this near to a remembered one along both axes are merged with it, mm.
-const MERGE_MM: u32 = 4;
+const MERGE_MM: u32 = 2;
 /// How many of the points stored last are candidates for merging; bounds the work of a scan.
 const MERGE_WINDOW: usize = 64;
 /// What merging adds to the older point's ball: at least `MERGE_MM` times the root of two, mm.
-const MERGE_GROWTH_MM: u16 = 6;
+const MERGE_GROWTH_MM: u16 = 3;
 
 /// A point that the newest scans do not show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

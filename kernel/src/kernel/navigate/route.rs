@@ -1,0 +1,235 @@
+//! Routes: via points to pass, a destination to stop at, and which of them comes next.
+
+use crate::input::Pose;
+use crate::time::Instant;
+use crate::units::{BinaryAngle, Length};
+use core::f64::consts::PI;
+
+/// A via point counts as passed within this many tolerances once the robot is beyond it.
+const PASSED_WITHIN: f64 = 3.0;
+/// How many tolerances of a via point to look beyond it. Steering for a point this far ahead
+/// cuts a right angle by about a third of it.
+const CUT: f64 = 3.0;
+/// How near a point that is only steered for may come, m.
+const STEERING_TOLERANCE_M: f64 = 1e-3;
+/// µm per metre.
+const MICRO: f64 = 1e6;
+
+/// A point to pass, odometry frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Via {
+    /// Position along x, µm.
+    pub x_um: i64,
+    /// Position along y, µm.
+    pub y_um: i64,
+    /// It counts as passed within this distance.
+    pub tolerance: Length,
+}
+
+/// Where to come to rest, odometry frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Destination {
+    /// Position along x, µm.
+    pub x_um: i64,
+    /// Position along y, µm.
+    pub y_um: i64,
+    /// The position counts as reached within this distance.
+    pub tolerance: Length,
+    /// Heading to take there; `None`: any.
+    pub heading: Option<BinaryAngle>,
+    /// The heading counts as reached within this angle, counts of 2⁻³² turn, below half a turn.
+    pub heading_tolerance: u32,
+}
+
+/// An order: pass the via points in turn, then stop at the destination.
+///
+/// Handed in afresh with every tick; nothing of it is kept but how far it has come.
+#[derive(Clone, Copy, Debug)]
+pub struct Route<'a> {
+    /// When it was ordered. A route ordered before the last release of a latched stop is void.
+    pub stamp: Instant,
+    /// Another id starts at the first via point.
+    pub id: u32,
+    /// Via points in their order; any number.
+    pub via: &'a [Via],
+    /// Where it ends.
+    pub goal: Destination,
+}
+
+/// How far a route has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Course {
+    /// The route's id.
+    pub id: u32,
+    /// Index of the next via point; their number once the destination is next.
+    pub next: usize,
+    /// Where the leg to the next target begins: the target before, or where the route began, µm.
+    from: (i64, i64),
+}
+
+/// The next target as seen from the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sight {
+    /// Body frame, metres.
+    pub position: [f64; 2],
+    /// Distance, metres.
+    pub distance_m: f64,
+    /// It counts as reached within this distance, metres.
+    pub tolerance_m: f64,
+    /// Whether it is the destination.
+    pub is_goal: bool,
+}
+
+impl Sight {
+    /// Whether the destination's position is reached.
+    pub fn is_reached(&self) -> bool {
+        self.is_goal && self.distance_m <= self.tolerance_m
+    }
+}
+
+impl Route<'_> {
+    /// Whether all tolerances of the next targets can be met: positive, the angle below half a turn.
+    pub(super) fn is_valid(&self) -> bool {
+        let goal = &self.goal;
+        goal.tolerance > Length::ZERO
+            && (goal.heading.is_none() || (1..1 << 31).contains(&goal.heading_tolerance))
+            && self.via.iter().all(|via| via.tolerance > Length::ZERO)
+    }
+
+    /// The destination's position in the body frame at `pose`, m.
+    pub(super) fn goal_seen(&self, pose: &Pose) -> [f64; 2] {
+        let (place, _) = self.target(self.via.len(), pose);
+        Sight::of(pose, place, None).position
+    }
+
+    /// Position and tolerance of target `index`, metres from `origin` along the odometry axes.
+    fn target(&self, index: usize, origin: &Pose) -> ([f64; 2], f64) {
+        let (x_um, y_um, tolerance) = match self.via.get(index) {
+            Some(via) => (via.x_um, via.y_um, via.tolerance),
+            None => (self.goal.x_um, self.goal.y_um, self.goal.tolerance),
+        };
+        let metres = |to: i64, from: i64| to.saturating_sub(from) as f64 / MICRO;
+        (
+            [metres(x_um, origin.x_um), metres(y_um, origin.y_um)],
+            f64::from(tolerance.as_um()) / MICRO,
+        )
+    }
+}
+
+impl Course {
+    /// The course after passing every via point that `pose` has reached.
+    ///
+    /// # Bound
+    /// O(via points), once over the whole route.
+    pub fn of(before: Option<Self>, route: &Route<'_>, pose: &Pose) -> Self {
+        let mut course = before
+            .filter(|course| course.id == route.id && course.next <= route.via.len())
+            .unwrap_or(Self {
+                id: route.id,
+                next: 0,
+                from: (pose.x_um, pose.y_um),
+            });
+        while let Some(via) = route.via.get(course.next) {
+            if !course.has_passed(route, pose) {
+                break;
+            }
+            course.from = (via.x_um, via.y_um);
+            course.next = course.next.saturating_add(1);
+        }
+        course
+    }
+
+    /// Within the tolerance, or nearby and beyond the point in the direction of the next one.
+    fn has_passed(&self, route: &Route<'_>, pose: &Pose) -> bool {
+        let ([x, y], tolerance) = route.target(self.next, pose);
+        let distance = libm::hypot(x, y);
+        if distance <= tolerance || distance > PASSED_WITHIN * tolerance {
+            return distance <= tolerance;
+        }
+        let onward = (self.next..route.via.len()).find_map(|index| {
+            let ([to_x, to_y], _) = route.target(index.saturating_add(1), pose);
+            let way = (to_x - x, to_y - y);
+            (libm::hypot(way.0, way.1) > STEERING_TOLERANCE_M).then_some(way)
+        });
+        onward.is_some_and(|(along, across)| x * along + y * across < 0.0)
+    }
+
+    /// What to steer for from `pose`: the point `ahead_m` onwards on the legs between the via
+    /// points, counted from the place on the present leg that is nearest to the robot. On the way
+    /// to the first via point and to the destination there is no leg to keep to.
+    ///
+    /// Never more than [`CUT`] tolerances beyond the next via point: the tolerance says how far
+    /// the corner there may be cut.
+    /// # Bound
+    /// O(via points within `ahead_m`).
+    pub fn onward(&self, route: &Route<'_>, pose: &Pose, ahead_m: f64) -> Sight {
+        let (mut to, tolerance_m) = route.target(self.next, pose);
+        let (mut place, rest) = self.on_leg(to, pose);
+        let mut left = ahead_m.min(rest + CUT * tolerance_m);
+        for next in self.next..route.via.len() {
+            let ([x, y], [to_x, to_y]) = (place, to);
+            let (along, across) = (to_x - x, to_y - y);
+            let length = libm::hypot(along, across);
+            if length > left {
+                let part = left / length;
+                let place = [x + along * part, y + across * part];
+                return Sight::of(pose, place, None);
+            }
+            (place, left) = (to, left - length);
+            to = route.target(next.saturating_add(1), pose).0;
+        }
+        Course {
+            next: route.via.len(),
+            ..*self
+        }
+        .straight(route, pose)
+    }
+
+    /// The next target itself.
+    pub fn straight(&self, route: &Route<'_>, pose: &Pose) -> Sight {
+        let (place, tolerance_m) = route.target(self.next, pose);
+        let is_goal = self.next >= route.via.len();
+        Sight::of(pose, place, is_goal.then_some(tolerance_m))
+    }
+
+    /// The place on the present leg nearest to the robot, and the rest of the leg, m.
+    fn on_leg(&self, [to_x, to_y]: [f64; 2], pose: &Pose) -> ([f64; 2], f64) {
+        if self.next == 0 {
+            return ([0.0; 2], libm::hypot(to_x, to_y));
+        }
+        let metres = |to: i64, from: i64| to.saturating_sub(from) as f64 / MICRO;
+        let (x, y) = (
+            metres(self.from.0, pose.x_um),
+            metres(self.from.1, pose.y_um),
+        );
+        let (along, across) = (to_x - x, to_y - y);
+        let squared = along * along + across * across;
+        let part = if squared > 0.0 {
+            (-(x * along + y * across) / squared).max(0.0).min(1.0)
+        } else {
+            1.0
+        };
+        let place = [x + along * part, y + across * part];
+        (place, libm::sqrt(squared) * (1.0 - part))
+    }
+}
+
+impl Sight {
+    /// `place` along the odometry axes, seen from `pose`; with a tolerance it is the destination.
+    ///
+    /// What is only steered for is never reached: passing is judged by the course.
+    fn of(pose: &Pose, [x, y]: [f64; 2], goal_tolerance_m: Option<f64>) -> Self {
+        let (sin, cos) = libm::sincos(radians(pose.heading));
+        Self {
+            position: [cos * x + sin * y, cos * y - sin * x],
+            distance_m: libm::hypot(x, y),
+            tolerance_m: goal_tolerance_m.unwrap_or(STEERING_TOLERANCE_M),
+            is_goal: goal_tolerance_m.is_some(),
+        }
+    }
+}
+
+/// An angle in (-π, π].
+pub(super) fn radians(angle: BinaryAngle) -> f64 {
+    f64::from(angle.minus(BinaryAngle::ZERO)) * (PI / 2_147_483_648.0)
+}

@@ -1,0 +1,342 @@
+//! The navigator through its door: it drives to goals in a room, stops where nothing leads on, and says why.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::arithmetic_side_effects,
+    clippy::cast_possible_truncation
+)]
+
+mod common;
+
+use common::{Room, config, m};
+use haltline::Navigator;
+use haltline::decision::{Action, Decision, Reason, StopStatus};
+use haltline::input::{Inputs, Motion, Reading, Scan};
+use haltline::kernel::navigate::{
+    Blocked, Destination, Navigation, Obstruction, Planning, Progress, ProgressRules, Route, Via,
+};
+use haltline::time::{Duration, Instant};
+use haltline::units::BinaryAngle;
+
+type Pilot = Navigator<1, 541, 1024, 160, 160>;
+
+struct Drive {
+    room: Room,
+    pilot: Box<Pilot>,
+    refused: u32,
+}
+
+fn um(metres: f64) -> i64 {
+    (metres * 1e6).round() as i64
+}
+
+fn goal(x: f64, y: f64) -> Destination {
+    Destination {
+        x_um: um(x),
+        y_um: um(y),
+        tolerance: m(0.15),
+        heading: None,
+        heading_tolerance: 0,
+    }
+}
+
+fn via(x: f64, y: f64) -> Via {
+    Via {
+        x_um: um(x),
+        y_um: um(y),
+        tolerance: m(0.2),
+    }
+}
+
+fn order(stamp: Instant, via: &[Via], goal: Destination) -> Route<'_> {
+    Route {
+        stamp,
+        id: 1,
+        via,
+        goal,
+    }
+}
+
+impl Drive {
+    /// In a room of 20 m x 8 m, released and at rest.
+    fn new() -> Self {
+        Self::with(Planning::default())
+    }
+
+    fn with(planning: Planning) -> Self {
+        let mut drive = Self {
+            room: Room::new((-3.0, 17.0), (-4.0, 4.0), config()),
+            pilot: Box::new(Pilot::new(config(), planning).unwrap()),
+            refused: 0,
+        };
+        for _ in 0..10 {
+            let _ = drive.tick(None, false);
+        }
+        let decision = drive.tick(None, true).decision;
+        assert_eq!(decision.status, StopStatus::Running, "{decision:?}");
+        drive
+    }
+
+    fn tick(&mut self, route: Option<&Route<'_>>, reset: bool) -> Navigation {
+        let beams = self.room.beams();
+        let scans = [Reading::Value(Scan {
+            scanner: 0,
+            stamp: Instant::from_us(self.room.now_us - 20_000),
+            beams: &beams,
+        })];
+        let inputs = Inputs {
+            scans: &scans,
+            odometry: Reading::Value(self.room.odometry()),
+            reset: reset.then(|| self.room.now()),
+            ..Inputs::default()
+        };
+        self.step(&inputs, route)
+    }
+
+    fn step(&mut self, inputs: &Inputs<'_>, route: Option<&Route<'_>>) -> Navigation {
+        let answer = self.pilot.step(inputs, route, self.room.now());
+        let Motion::Twist(twist) = answer.decision.setpoint else {
+            panic!("a differential drive gets twists");
+        };
+        self.refused += u32::from(answer.refused);
+        self.room.execute(twist);
+        answer
+    }
+
+    /// Follows `route` until it arrives or has stood for two seconds.
+    fn follow(&mut self, route: &Route<'_>) -> Navigation {
+        let mut standing = 0;
+        for _ in 0..3_000 {
+            let answer = self.tick(Some(route), false);
+            standing = if self.room.twist == [0.0, 0.0] {
+                standing + 1
+            } else {
+                0
+            };
+            if standing > 50 {
+                return answer;
+            }
+        }
+        panic!("still moving after 3000 ticks at {:?}", self.room.pose);
+    }
+}
+
+fn set_point(decision: &Decision) -> (i32, i32) {
+    match decision.setpoint {
+        Motion::Twist(twist) => (twist.linear.as_um_per_s(), twist.angular.as_urad_per_s()),
+        Motion::Arc { .. } => panic!("a differential drive gets twists"),
+    }
+}
+
+#[test]
+fn drives_through_via_points_and_turns_to_its_heading() {
+    let mut drive = Drive::new();
+    let stamp = drive.room.now();
+    let mut end = goal(8.0, -1.0);
+    end.heading = Some(BinaryAngle::from_counts(1 << 30));
+    end.heading_tolerance = 1 << 26;
+    let via = [via(3.0, 1.5), via(5.0, -1.0)];
+    let answer = drive.follow(&order(stamp, &via, end));
+    assert_eq!(answer.progress, Progress::Arrived, "{:?}", drive.room.pose);
+    let [x, y, heading] = drive.room.pose;
+    assert!((x - 8.0).hypot(y + 1.0) < 0.16, "{x} {y}");
+    assert!((heading.to_degrees() - 90.0).abs() < 6.0, "{heading}");
+    assert_eq!(
+        drive.refused, 0,
+        "the guard refuses nothing in an empty room"
+    );
+}
+
+#[test]
+fn a_goal_behind_the_wall_is_blocked_with_point_and_time() {
+    let mut drive = Drive::new();
+    let began = drive.room.now();
+    let answer = drive.follow(&order(began, &[], goal(20.0, 0.0)));
+    let Progress::Blocked(Blocked {
+        reason: Obstruction::NoWay,
+        point: Some(point),
+        since,
+    }) = answer.progress
+    else {
+        panic!("{answer:?}")
+    };
+    let ahead = drive.room.pose[0] + f64::from(point.x_mm) * 1e-3;
+    assert!(
+        (ahead - 17.0).abs() < 0.05,
+        "the point lies on the wall: {ahead}"
+    );
+    assert!(since > began && since < drive.room.now(), "{since:?}");
+    assert!(
+        drive.room.pose[0] > 14.5 && drive.room.pose[0] < 16.4,
+        "{:?}",
+        drive.room.pose
+    );
+    assert_eq!(answer.decision.reason, Reason::PathBlocked);
+}
+
+#[test]
+fn a_goal_in_the_wall_is_reported_as_occupied() {
+    let mut drive = Drive::new();
+    let stamp = drive.room.now();
+    let answer = drive.follow(&order(stamp, &[], goal(17.0, 0.0)));
+    let Progress::Blocked(blocked) = answer.progress else {
+        panic!("{answer:?}")
+    };
+    assert_eq!(blocked.reason, Obstruction::GoalOccupied);
+}
+
+#[test]
+fn without_a_route_it_is_a_shield() {
+    let mut drive = Drive::new();
+    let command = drive.room.command(0.3, 0.0);
+    let inputs = Inputs {
+        odometry: Reading::Value(drive.room.odometry()),
+        command,
+        ..Inputs::default()
+    };
+    let answer = drive.step(&inputs, None);
+    assert_eq!(answer.progress, Progress::Idle);
+    assert_eq!(answer.decision.action, Action::Pass);
+    assert!(set_point(&answer.decision).0 > 0);
+    let silent = drive.tick(None, false);
+    assert_eq!(
+        silent.decision.reason,
+        Reason::None,
+        "the command is not stale yet"
+    );
+}
+
+#[test]
+fn a_route_that_is_held_back_stops_the_robot() {
+    let mut drive = Drive::new();
+    let stamp = drive.room.now();
+    let route = order(stamp, &[], goal(8.0, 0.0));
+    for _ in 0..20 {
+        let _ = drive.tick(Some(&route), false);
+    }
+    assert!(drive.room.twist[0] > 0.2);
+    let answer = drive.tick(None, false);
+    assert_eq!(answer.decision.action, Action::Brake);
+    assert_eq!(answer.decision.reason, Reason::CommandMissing);
+}
+
+#[test]
+fn a_route_and_a_command_contradict_each_other() {
+    let mut drive = Drive::new();
+    let route = order(drive.room.now(), &[], goal(8.0, 0.0));
+    let inputs = Inputs {
+        odometry: Reading::Value(drive.room.odometry()),
+        command: drive.room.command(0.3, 0.0),
+        ..Inputs::default()
+    };
+    let answer = drive.step(&inputs, Some(&route));
+    assert_eq!(answer.decision.action, Action::Brake);
+    assert_eq!(answer.decision.reason, Reason::CommandMalformed);
+    assert_eq!(answer.progress, Progress::Held);
+}
+
+#[test]
+fn impossible_and_future_routes_are_refused() {
+    let mut drive = Drive::new();
+    let now = drive.room.now();
+    let mut end = goal(8.0, 0.0);
+    end.tolerance = m(0.0);
+    let answer = drive.tick(Some(&order(now, &[], end)), false);
+    assert_eq!(answer.decision.reason, Reason::CommandMalformed);
+    let later = now.plus(Duration::from_ms(10_000));
+    let answer = drive.tick(Some(&order(later, &[], goal(8.0, 0.0))), false);
+    assert_eq!(answer.decision.reason, Reason::CommandFuture);
+}
+
+#[test]
+fn an_emergency_stop_voids_the_route_and_a_protective_stop_does_not() {
+    let mut drive = Drive::new();
+    let stamp = drive.room.now();
+    let route = order(stamp, &[], goal(12.0, 0.0));
+    for _ in 0..20 {
+        let _ = drive.tick(Some(&route), false);
+    }
+    // Half a second without scans: a protective stop, then the way goes on.
+    for _ in 0..15 {
+        let inputs = Inputs {
+            odometry: Reading::Value(drive.room.odometry()),
+            ..Inputs::default()
+        };
+        let _ = drive.step(&inputs, Some(&route));
+    }
+    let held = drive.tick(Some(&route), false);
+    assert_eq!(held.decision.status, StopStatus::Protective);
+    assert_eq!(held.progress, Progress::Held);
+    for _ in 0..60 {
+        let _ = drive.tick(Some(&route), false);
+    }
+    assert!(drive.room.twist[0] > 0.1, "released by rule");
+    let inputs = Inputs {
+        odometry: Reading::Value(drive.room.odometry()),
+        emergency_stop: true,
+        ..Inputs::default()
+    };
+    let _ = drive.step(&inputs, Some(&route));
+    for _ in 0..60 {
+        let _ = drive.tick(Some(&route), false);
+    }
+    let _ = drive.tick(Some(&route), true);
+    let old = drive.tick(Some(&route), false);
+    assert_eq!(old.decision.status, StopStatus::Running);
+    assert_eq!(old.decision.reason, Reason::CommandMissing, "an old order");
+    let fresh = order(drive.room.now(), &[], goal(12.0, 0.0));
+    let answer = drive.tick(Some(&fresh), false);
+    assert!(set_point(&answer.decision).0 > 0, "{answer:?}");
+}
+
+#[test]
+fn moving_without_coming_nearer_ends_the_route_until_another() {
+    // Coming nearer by less than 100 m does not count here, so any way gives up.
+    let planning = Planning {
+        progress: ProgressRules {
+            distance_m: 100.0,
+            time: Duration::from_ms(2_000),
+        },
+        ..Planning::default()
+    };
+    let mut drive = Drive::with(planning);
+    let stamp = drive.room.now();
+    let mut route = order(stamp, &[], goal(12.0, 0.0));
+    let answer = drive.follow(&route);
+    let Progress::Blocked(blocked) = answer.progress else {
+        panic!("{answer:?}")
+    };
+    assert_eq!(blocked.reason, Obstruction::NoProgress);
+    assert!(drive.room.pose[0] < 3.0);
+    route.id = 2;
+    let answer = drive.tick(Some(&route), false);
+    assert!(
+        set_point(&answer.decision).0 > 0,
+        "another route starts afresh"
+    );
+}
+
+#[test]
+fn the_planning_grid_knows_the_walls() {
+    use haltline::grid::Occupancy;
+    let mut drive = Drive::new();
+    for _ in 0..10 {
+        let _ = drive.tick(None, false);
+    }
+    let grid = drive.pilot.grid().grid();
+    let at = |x: f64, y: f64| grid.occupancy(grid.cell_at(um(x), um(y)).unwrap());
+    assert_eq!(at(0.05, 4.02), Occupancy::Occupied);
+    assert_eq!(at(2.05, 0.05), Occupancy::Free);
+    assert_eq!(at(2.05, 6.05), Occupancy::Unknown);
+}
+
+#[test]
+fn planning_that_makes_no_sense_is_refused() {
+    let mut planning = Planning::default();
+    planning.tuning.comfort = f64::NAN;
+    assert!(Pilot::new(config(), planning).is_err());
+    planning = Planning::default();
+    planning.progress.time = Duration::ZERO;
+    assert!(Pilot::new(config(), planning).is_err());
+}
