@@ -25,8 +25,11 @@ fn outward(fault: bool) {
 /// large is refused; every bit pattern of an f64.
 //= spec/guard.md#guard-21
 //= type=proof
+//# Every rounding in the computation of a tube MUST enlarge the tube or be covered by the
+//# rounding term of its budget.
 //= spec/input.md#input-09
 //= type=proof
+//# A number that is not finite or out of range MUST make the value it belongs to malformed.
 #[kani::proof]
 #[kani::solver(cadical)]
 fn rounding_is_outward_or_refused() {
@@ -54,6 +57,8 @@ fn nearest(slack: f64) {
 /// A measured value is rounded by at most 0.500001 counts; every f64 within 10⁹ counts.
 //= spec/guard.md#guard-21
 //= type=proof
+//# Every rounding in the computation of a tube MUST enlarge the tube or be covered by the
+//# rounding term of its budget.
 #[kani::proof]
 #[kani::solver(cadical)]
 fn measured_values_round_to_nearest() {
@@ -81,6 +86,7 @@ fn total_durations(fault: bool) {
 /// Durations and angles: not finite or out of range is refused; every bit pattern of an f64.
 //= spec/input.md#input-09
 //= type=proof
+//# A number that is not finite or out of range MUST make the value it belongs to malformed.
 #[kani::proof]
 #[kani::solver(cadical)]
 fn durations_and_angles_are_total() {
@@ -123,6 +129,8 @@ fn classified(fault: bool) {
 /// lie within the scanner's range (0.02 m to 30 m).
 //= spec/input.md#input-01
 //= type=proof
+//# Every bit pattern of a beam MUST be classified as exactly one of hit, no-return, too-near and
+//# invalid.
 #[kani::proof]
 #[kani::solver(cadical)]
 fn every_range_is_classified() {

@@ -17,6 +17,8 @@ fn nearest(slack: i64) {
 /// A coordinate of the recurrence is rounded by at most half a count; every product up to 2⁶⁰.
 //= spec/guard.md#guard-21
 //= type=proof
+//# Every rounding in the computation of a tube MUST enlarge the tube or be covered by the
+//# rounding term of its budget.
 #[kani::proof]
 fn products_round_to_nearest() {
     nearest(0);
@@ -47,6 +49,8 @@ fn clamps(fault: i64) {
 /// Narrowing keeps sign and order and never wraps; every 64-bit value.
 //= spec/guard.md#guard-21
 //= type=proof
+//# Every rounding in the computation of a tube MUST enlarge the tube or be covered by the
+//# rounding term of its budget.
 #[kani::proof]
 fn narrowing_saturates() {
     clamps(0);
@@ -74,6 +78,8 @@ fn horizon(fault: i32) {
 /// Points beyond the horizon are told apart and never folded back; every point, heading zero.
 //= spec/guard.md#guard-18
 //= type=proof
+//# The guard MUST refuse a motion whose tube needs more samples, a longer path or larger
+//# coordinates than it can represent.
 #[kani::proof]
 fn far_points_are_never_folded_back() {
     horizon(0);
@@ -98,6 +104,7 @@ fn turns(fault: i32) {
 /// Differences of angles wrap exactly; every pair of angles.
 //= spec/time.md#time-02
 //= type=proof
+//# A tick MUST NOT panic, allocate or recurse.
 #[kani::proof]
 fn angles_wrap_exactly() {
     turns(0);

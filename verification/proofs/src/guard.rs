@@ -118,8 +118,12 @@ fn known_point_blocks(sample: Sample, wrong: i64) {
 /// every sample that is not turned.
 //= spec/guard.md#guard-01
 //= type=proof
+//# The guard MUST refuse a motion when a known point lies in one of the inflated samples of its
+//# tube.
 //= spec/guard.md#guard-06
 //= type=proof
+//# Every sample MUST be inflated by no less than the sum of sensor error, beam gap, odometry
+//# error, obstacle motion, tracking error, sampling, spread and rounding as derived in the model.
 #[kani::proof]
 #[kani::unwind(4)]
 #[kani::solver(cadical)]
@@ -154,8 +158,12 @@ fn second_point_blocks(sample: Sample, wrong: i64) {
 /// every pair of points, joined ones at most 1.5 m apart, every sample that is not turned.
 //= spec/guard.md#guard-01
 //= type=proof
+//# The guard MUST refuse a motion when a known point lies in one of the inflated samples of its
+//# tube.
 //= spec/guard.md#guard-17
 //= type=proof
+//# A refused motion MUST NOT become accepted by adding a known point, by turning a known cell
+//# into an unknown one or by enlarging an error bound.
 #[kani::proof]
 #[kani::unwind(4)]
 #[kani::solver(cadical)]
@@ -184,6 +192,8 @@ fn second_sample_blocks(first: Sample, second: Sample, wrong: i64) {
 /// two samples that are not turned.
 //= spec/guard.md#guard-01
 //= type=proof
+//# The guard MUST refuse a motion when a known point lies in one of the inflated samples of its
+//# tube.
 #[kani::proof]
 #[kani::unwind(4)]
 #[kani::solver(cadical)]
@@ -213,6 +223,8 @@ fn wide_point_blocks(least: u16) {
 /// A point whose own inflation is beyond the cap blocks at once; every inflation above it.
 //= spec/guard.md#guard-18
 //= type=proof
+//# The guard MUST refuse a motion whose tube needs more samples, a longer path or larger
+//# coordinates than it can represent.
 #[kani::proof]
 #[kani::unwind(4)]
 #[kani::solver(cadical)]

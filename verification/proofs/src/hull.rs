@@ -37,8 +37,13 @@ fn overflow_is_refused(fault: bool) {
 /// A hull in which a motion found no room is refused, whatever the motion.
 //= spec/guard.md#guard-03
 //= type=proof
+//# The hull of a motion MUST contain the measured twist, every set point sent after the odometry
+//# stamp minus the actuation latency, the last set point sent before that moment, and the set
+//# point to be sent.
 //= spec/guard.md#guard-18
 //= type=proof
+//# The guard MUST refuse a motion whose tube needs more samples, a longer path or larger
+//# coordinates than it can represent.
 #[kani::proof]
 #[kani::unwind(43)]
 fn an_incomplete_hull_is_refused() {
@@ -76,8 +81,13 @@ fn ranges_contain(fault: u64) {
 /// three motions.
 //= spec/guard.md#guard-03
 //= type=proof
+//# The hull of a motion MUST contain the measured twist, every set point sent after the odometry
+//# stamp minus the actuation latency, the last set point sent before that moment, and the set
+//# point to be sent.
 //= spec/guard.md#guard-13
 //= type=proof
+//# The curvature interval of an Ackermann tube MUST contain every wheel angle the steering can
+//# have at any moment of the tube, widened by the curvature tolerance.
 #[kani::proof]
 #[kani::unwind(5)]
 #[kani::solver(cadical)]

@@ -35,6 +35,8 @@ fn forgets_by_rule(fault: u8) {
 /// it; every count and every number of scans.
 //= spec/memory.md#memory-02
 //= type=proof
+//# A remembered hit MUST NOT be cleared before the configured number of consecutive scans had at
+//# least one beam through its error disc and all of these beams pass beyond it.
 #[kani::proof]
 fn a_point_goes_only_by_the_rule() {
     forgets_by_rule(0);

@@ -39,6 +39,8 @@ fn inside_is_contained(wrong: i64) {
 /// A point inside or on the edge of a rectangle is contained in it; every rectangle, every point.
 //= spec/guard.md#guard-01
 //= type=proof
+//# The guard MUST refuse a motion when a known point lies in one of the inflated samples of its
+//# tube.
 #[kani::proof]
 fn a_point_inside_is_contained() {
     inside_is_contained(0);
@@ -61,6 +63,8 @@ fn end_inside_touches(wrong: i64) {
 /// A segment with an end in a rectangle touches it; every rectangle, every segment, no panic.
 //= spec/guard.md#guard-01
 //= type=proof
+//# The guard MUST refuse a motion when a known point lies in one of the inflated samples of its
+//# tube.
 #[kani::proof]
 #[kani::solver(cadical)]
 fn a_segment_with_an_end_inside_touches() {
@@ -84,6 +88,8 @@ fn growth_keeps(least: i32) {
 /// What a rectangle contains, it contains when a margin grows: every rectangle, point and margin.
 //= spec/guard.md#guard-17
 //= type=proof
+//# A refused motion MUST NOT become accepted by adding a known point, by turning a known cell
+//# into an unknown one or by enlarging an error bound.
 #[kani::proof]
 fn a_larger_margin_contains_no_less() {
     growth_keeps(0);
@@ -107,6 +113,9 @@ fn distance_grows_outside(wrong: u64) {
 /// The squared distance is zero exactly inside; every rectangle around the origin, every point.
 //= spec/guard.md#guard-19
 //= type=proof
+//# In a static world, a known point outside footprint and critical zone but inside the inflation
+//# of the place where the robot rests or rested last MUST block every motion that brings the
+//# footprint nearer to it by more than rounding.
 #[kani::proof]
 #[kani::solver(cadical)]
 fn distance_is_zero_exactly_inside() {

@@ -31,6 +31,7 @@ fn outside_is_unknown(reach: i32) {
 /// Nothing outside the window is known, and no index leaves it; every point.
 //= spec/memory.md#memory-10
 //= type=proof
+//# Space outside the window of the memory MUST be unknown.
 #[kani::proof]
 #[kani::unwind(130)]
 fn outside_the_window_is_unknown() {
@@ -60,6 +61,7 @@ fn old_space_goes(fault: u64) {
 /// Space not seen for longer than the limit is unknown; every time and limit.
 //= spec/memory.md#memory-08
 //= type=proof
+//# Space not seen for longer than `age_max` MUST be unknown.
 #[kani::proof]
 #[kani::unwind(130)]
 fn old_space_is_unknown() {

@@ -58,6 +58,7 @@ fn line_latches(fault: bool) {
 /// A pulled line latches in the same step, from every state.
 //= spec/latch.md#latch-02
 //= type=proof
+//# A pulled emergency stop line MUST latch an emergency stop in the same tick.
 #[kani::proof]
 fn a_pulled_line_latches() {
     line_latches(false);
@@ -88,8 +89,11 @@ fn latch_holds(fault: bool) {
 /// and not old, with the line released and no hazard.
 //= spec/latch.md#latch-03
 //= type=proof
+//# An emergency stop MUST hold until a reset is given at rest with the line released.
 //= spec/latch.md#latch-04
 //= type=proof
+//# A reset MUST have no effect unless its stamp is later than the moment at which the stop was
+//# latched and not later than `now`.
 #[kani::proof]
 fn a_latch_holds_without_a_reset_at_rest() {
     latch_holds(false);
@@ -120,8 +124,12 @@ fn protective_holds(fault: u64) {
 /// A protective stop ends only at rest, without a hazard, after the clear time.
 //= spec/latch.md#latch-05
 //= type=proof
+//# A protective stop MUST hold until the robot is at rest and its cause has been gone for the
+//# clear time.
 //= spec/zone.md#zone-04
 //= type=proof
+//# A protective stop for the critical zone MUST last as long as any new scan has a return in the
+//# zone.
 #[kani::proof]
 fn a_protective_stop_holds_until_rest_and_clear() {
     protective_holds(0);
@@ -149,6 +157,7 @@ fn release_kills_old(fault: u64) {
 /// A release kills every command stamped up to now, and nothing else moves that moment.
 //= spec/latch.md#latch-06
 //= type=proof
+//# After a release the kernel MUST NOT execute a command stamped at or before the release.
 #[kani::proof]
 fn a_release_kills_older_commands() {
     release_kills_old(0);
@@ -171,6 +180,7 @@ fn hazard_stops(fault: bool) {
 /// A hazard leaves no state running.
 //= spec/latch.md#latch-08
 //= type=proof
+//# When several causes apply in one tick, the most restrictive action MUST win.
 #[kani::proof]
 fn a_hazard_leaves_nothing_running() {
     hazard_stops(false);
@@ -194,6 +204,7 @@ fn starts_latched(fault: bool) {
 /// A new kernel is latched, and its first step stays so without a reset.
 //= spec/latch.md#latch-01
 //= type=proof
+//# A kernel that was just created MUST be latched.
 #[kani::proof]
 fn a_new_kernel_is_latched() {
     starts_latched(false);

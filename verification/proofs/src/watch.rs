@@ -19,14 +19,20 @@ fn stale(fault: u64) {
 /// Older than its limit, or from the future, is stale, and nothing else is; every instant and limit.
 //= spec/fresh.md#fresh-01
 //= type=proof
+//# The kernel MUST stop while the newest usable scan of any configured scanner is older than
+//# `scan_age_max`.
 //= spec/fresh.md#fresh-02
 //= type=proof
+//# The kernel MUST stop while the newest usable odometry is older than `odometry_age_max`.
 //= spec/fresh.md#fresh-03
 //= type=proof
+//# The kernel MUST brake while the newest usable command is older than `command_age_max`.
 //= spec/fresh.md#fresh-04
 //= type=proof
+//# Data stamped later than `now` MUST be treated as stale.
 //= spec/fresh.md#fresh-08
 //= type=proof
+//# An age limit of zero MUST NOT switch a freshness check off.
 #[kani::proof]
 fn old_and_future_stamps_are_stale() {
     stale(0);
@@ -60,8 +66,10 @@ fn ordered(fault: u64) {
 /// Only a stamp later than the newest and not later than now is newer; every instant.
 //= spec/input.md#input-08
 //= type=proof
+//# A value stamped no later than the newest of its channel MUST NOT replace it.
 //= spec/fresh.md#fresh-05
 //= type=proof
+//# A channel found stale MUST stay stale until a usable value with a newer stamp arrives.
 #[kani::proof]
 fn only_a_later_stamp_is_newer() {
     ordered(0);
@@ -88,6 +96,7 @@ fn spans(fault: u64) {
 /// Differences of instants never wrap, and sums saturate; every instant.
 //= spec/time.md#time-05
 //= type=proof
+//# The kernel MUST NOT read a clock.
 #[kani::proof]
 fn time_never_wraps() {
     spans(0);

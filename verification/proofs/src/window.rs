@@ -52,12 +52,16 @@ fn in_limits(fault: i64) {
 /// set point, limit and step up to 10 s.
 //= spec/limit.md#limit-01
 //= type=proof
+//# The speed of every set point MUST lie between minus the reverse limit and the forward limit.
 //= spec/limit.md#limit-02
 //= type=proof
+//# The turn rate of every set point MUST NOT exceed the turn rate limit in magnitude.
 //= spec/limit.md#limit-03
 //= type=proof
+//# A set point MUST NOT be negative in speed where the reverse limit is zero.
 //= spec/limit.md#limit-05
 //= type=proof
+//# The curvature of every Ackermann set point MUST NOT exceed the curvature limit in magnitude.
 #[kani::proof]
 #[kani::solver(cadical)]
 fn admissible_lies_within_the_limits() {
@@ -93,6 +97,8 @@ fn change_is_bounded(fault: i64) {
 /// braking; every set point and limit, a step of one second.
 //= spec/limit.md#limit-04
 //= type=proof
+//# An accepted set point MUST differ from the one before by no more than the acceleration limits
+//# allow in the time between them.
 #[kani::proof]
 #[kani::solver(cadical)]
 fn admissible_is_reachable() {
@@ -127,6 +133,7 @@ fn wrong_kind(fault: bool) {
 /// A command of the wrong kind for the drive is refused; every command.
 //= spec/limit.md#limit-09
 //= type=proof
+//# A desired motion of the wrong kind for the drive MUST be treated as malformed.
 #[kani::proof]
 fn the_wrong_kind_is_refused() {
     wrong_kind(false);
@@ -163,6 +170,7 @@ fn reverse_is_refused(fault: i32) {
 /// Every command with a speed below zero is refused where the reverse limit is zero.
 //= spec/limit.md#limit-03
 //= type=proof
+//# A set point MUST NOT be negative in speed where the reverse limit is zero.
 #[kani::proof]
 fn reverse_is_refused_where_nobody_looks() {
     reverse_is_refused(0);
@@ -190,6 +198,8 @@ fn never_faster(fault: bool) {
 /// A ramp to rest begins at the set point where the robot is measured no slower; every twist.
 //= spec/brake.md#brake-06
 //= type=proof
+//# A braking set point MUST NOT exceed in magnitude the measured twist plus its tolerance, nor
+//# the set point before it.
 #[kani::proof]
 fn a_ramp_begins_no_faster_than_measured() {
     never_faster(false);

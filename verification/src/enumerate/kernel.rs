@@ -4,13 +4,13 @@
 //! stopping decide. The rules are kept here a second time, in the simplest words, and compared
 //! with every decision.
 
-use haltline::Kernel;
 use haltline::config::{
     Config, Footprint, Kinematics, Limits, MASKS_MAX, MemoryRules, Ramps, Scanner, Timing,
     Tolerances, ZoneMargins,
 };
 use haltline::decision::{Action, Decision, StopStatus};
 use haltline::input::{Beam, Command, Inputs, Motion, Odometry, Pose, Reading, Scan, Twist};
+use haltline::kernel::Kernel;
 use haltline::time::{Duration, Instant};
 use haltline::units::{
     Acceleration, AngularAcceleration, AngularSpeed, BinaryAngle, Length, Ppm, Speed,
