@@ -18,7 +18,7 @@ const fn fault(
 }
 
 /// Chosen by hand.
-pub(super) const CHOSEN: [Fault; 34] = [
+pub(super) const CHOSEN: [Fault; 46] = [
     fault(
         "geometry/rect.rs",
         "point.x <= self.front",
@@ -222,5 +222,77 @@ pub(super) const CHOSEN: [Fault; 34] = [
         "let extra = point.extra_mm.max(start.extra_mm);",
         "let extra = point.extra_mm.min(start.extra_mm);",
         "guard::a_point_before",
+    ),
+    fault(
+        "geometry/frame.rs",
+        "            || offset.y.unsigned_abs() > VIEW_MM",
+        "            && offset.y.unsigned_abs() > VIEW_MM",
+        "geometry::far_points",
+    ),
+    fault(
+        "units.rs",
+        "self.0.wrapping_sub(other.0)",
+        "other.0.wrapping_sub(self.0)",
+        "geometry::angles_wrap",
+    ),
+    fault(
+        "odometry.rs",
+        ".saturating_mul(6_283_186)",
+        ".saturating_mul(6_283_184)",
+        "angles::turns",
+    ),
+    fault(
+        "guard/tube.rs",
+        ".saturating_mul(341_782_638)",
+        ".saturating_mul(341_782_000)",
+        "angles::half_turn",
+    ),
+    fault(
+        "geometry/trig.rs",
+        "(1_u32 << 31).wrapping_sub(quadrant)",
+        "(1_u32 << 30).wrapping_sub(quadrant)",
+        "angles::bearing",
+    ),
+    fault(
+        "convert.rs",
+        "if !(value > -EXACT && value < EXACT) {",
+        "if value <= -EXACT {",
+        "convert::rounding",
+    ),
+    fault(
+        "convert.rs",
+        "Round::Up if back < shifted",
+        "Round::Up if back > shifted",
+        "convert::rounding",
+    ),
+    fault(
+        "convert.rs",
+        "um < i64::from(range_min.as_um())",
+        "um > i64::from(range_min.as_um())",
+        "convert::every_range",
+    ),
+    fault(
+        "kernel/ingest.rs",
+        "watch::is_stale(newest.stamp, now, timing.odometry_age_max),",
+        "false,",
+        "kernel::every",
+    ),
+    fault(
+        "kernel/ingest.rs",
+        "Order::Future => return hazard.add(Reason::OdometryFuture),",
+        "Order::Future => return,",
+        "kernel::every",
+    ),
+    fault(
+        "kernel/mod.rs",
+        "elapsed > timing.period.plus(timing.jitter),",
+        "false,",
+        "kernel::every",
+    ),
+    fault(
+        "kernel/motion.rs",
+        "if command.stamp <= self.stop.released {",
+        "if false {",
+        "kernel::every",
     ),
 ];
