@@ -10,6 +10,7 @@ Examples:
   haltline certify my_robot.toml --out out/mine check it; then open out/mine/report.html
   haltline run scenarios/files/thin_pole.toml   drive one scenario and look at the picture
   haltline run FILE --naked                     the same without the guard: it should touch
+  haltline barn DIR                             drive all BARN worlds of a folder; table and summary
   haltline explain GUARD-01                     read a requirement and what stands behind it
 
 Exit codes:
@@ -63,6 +64,26 @@ different history.
 Example:
   haltline replay --format sena ../shared/data/sena/sena.csv.gz --out out/sena")]
     Replay(ReplayArgs),
+    /// Turn somebody else's world into a scenario file.
+    Import {
+        /// What the file is.
+        #[command(subcommand)]
+        what: Import,
+    },
+    /// Let the kernel drive all BARN worlds of a folder; print a table and the benchmark's score.
+    #[command(after_help = "\
+Each world is turned into a scenario as `haltline import barn` does it, and driven with every
+monitor watching. A world counts as reached within 1 m of the goal, without contact, in 100 s; its
+score is T / clip(time, 4 T, 8 T), where T is the way at 2 m/s: at most 0.25.
+
+With --out DIR it also writes barn.csv, barn.json and a picture of each run.
+Exit code 1 if the robot touched anything or a monitor objected; a goal that it did not reach is a
+result, not a failed claim.
+
+Examples:
+  haltline barn ../shared/data/barn
+  haltline barn ../shared/data/barn --sensor-bound 0.04 --out out/barn")]
+    Barn(BarnArgs),
     /// Print a requirement: its text, its assumptions, its evidence.
     #[command(
         after_help = "Examples:\n  haltline explain FRESH-01\n  haltline explain            list all"
@@ -109,6 +130,68 @@ pub struct RunArgs {
     /// Print one JSON object instead of the summary.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Worlds that can be imported.
+#[derive(Debug, Subcommand)]
+pub enum Import {
+    /// A world of the BARN benchmark: cylinders and reference path as CSV.
+    #[command(after_help = "\
+The file has the header kind,x_m,y_m; its rows are `cylinder,X,Y` (radius 0.075 m) and `path,X,Y`.
+The scenario holds the benchmark's task for the Jackal: start (-2, 3), goal (-2, 13), 100 s; the
+published path becomes via points, thinned where a straight line keeps as clear of the cylinders.
+The robot's values that differ from robots/jackal.toml stand in [robot_values].
+
+Examples:
+  haltline import barn world_003.csv -o world_003.toml && haltline run world_003.toml
+  haltline import barn world_003.csv -o wide.toml --sensor-bound 0.04")]
+    Barn(ImportBarnArgs),
+}
+
+/// Arguments of `import barn`.
+#[derive(Debug, clap::Args)]
+pub struct ImportBarnArgs {
+    /// World as CSV.
+    pub file: PathBuf,
+    /// Scenario file to write.
+    #[arg(short, long, value_name = "SCENARIO")]
+    pub output: PathBuf,
+    /// Bound of the lidar's range error that the kernel is told, in metres.
+    #[arg(long, value_name = "M", default_value = "0.005", value_parser = sensor_bound)]
+    pub sensor_bound: f64,
+    /// Overwrite a file that exists.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Arguments of `barn`.
+#[derive(Debug, clap::Args)]
+pub struct BarnArgs {
+    /// Folder with worlds as CSV.
+    pub folder: PathBuf,
+    /// Bound of the lidar's range error that the kernel is told, in metres.
+    #[arg(long, value_name = "M", default_value = "0.005", value_parser = sensor_bound)]
+    pub sensor_bound: f64,
+    /// Worlds driven at the same time [default: one for each core].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: Option<u16>,
+    /// Folder to write table and pictures to [default: none are written].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// A bound in metres that the simulated noise keeps to.
+fn sensor_bound(text: &str) -> Result<f64, String> {
+    use haltline_scenarios::barn::{NOISE_SIGMA_M, SENSOR_BOUND_MAX_M};
+    let least = 3.0 * NOISE_SIGMA_M;
+    text.parse::<f64>()
+        .ok()
+        .filter(|bound| (least..=SENSOR_BOUND_MAX_M).contains(bound))
+        .ok_or_else(|| {
+            format!(
+                "write metres from {least} (three times the simulated noise) to {SENSOR_BOUND_MAX_M}"
+            )
+        })
 }
 
 /// Arguments of `replay`.

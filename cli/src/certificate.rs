@@ -6,8 +6,9 @@
 use crate::claims::{Claim, Replay, Status};
 use crate::failure::Exit;
 use crate::provenance::{self, FileHash};
-use haltline_robots::Robot;
 use haltline_robots::contract::Contract;
+use haltline_robots::{Change, Robot};
+use haltline_scenarios::navigation::NavigationBrief;
 use haltline_scenarios::result::{
     BrokenAssumption, CaseResult, Contact, GroupResult, MonitorReport, Outcome, RunResult, Stop,
     SuiteResult,
@@ -111,6 +112,8 @@ pub struct CaseRecord {
     pub seed: u64,
     /// Obstacle speed bound given to the guard, m/s.
     pub obstacle_speed_mps: f64,
+    /// Values in which the robot of this run differs from its file.
+    pub robot_values: Vec<Change>,
     /// With the guard.
     pub guarded: RunRecord,
     /// Without it.
@@ -129,12 +132,14 @@ pub struct RunRecord {
     pub reached: bool,
     pub at_rest: bool,
     pub travelled_m: f64,
+    pub turned_rad: f64,
     pub min_clearance_m: Option<f64>,
     pub min_clearance_moving_m: Option<f64>,
     pub contacts: Vec<Contact>,
     pub stops: Vec<Stop>,
     pub monitors: Vec<MonitorReport>,
     pub assumptions_broken: Vec<BrokenAssumption>,
+    pub navigation: Option<NavigationBrief>,
 }
 
 impl From<&RunResult> for RunRecord {
@@ -144,12 +149,14 @@ impl From<&RunResult> for RunRecord {
             reached: run.reached,
             at_rest: run.at_rest,
             travelled_m: run.travelled_m,
+            turned_rad: run.turned_rad,
             min_clearance_m: run.min_clearance_m,
             min_clearance_moving_m: run.min_clearance_moving_m,
             contacts: run.contacts.clone(),
             stops: run.stops.clone(),
             monitors: run.monitors.clone(),
             assumptions_broken: run.assumptions_broken.clone(),
+            navigation: run.navigation.as_ref().map(NavigationBrief::from),
         }
     }
 }
@@ -219,6 +226,7 @@ fn case_record(case: &CaseResult, replay: &Replay) -> CaseRecord {
         requirements: case.requirements.clone(),
         seed: case.seed,
         obstacle_speed_mps: case.obstacle_speed_mps,
+        robot_values: case.robot_values.clone(),
         guarded: RunRecord::from(&case.guarded),
         naked: case.naked.as_ref().map(RunRecord::from),
         naked_reason: case.naked_reason.clone(),

@@ -174,6 +174,14 @@ pub fn from_suite(suite: &SuiteResult, replay: &Replay) -> Vec<Claim> {
     claims
 }
 
+/// Whether a run is evidence for the claims about this robot.
+///
+/// One that breaks an assumption on purpose is none for what rests on it, and one that changes values
+/// of the robot is about another robot; what either violates counts all the same.
+fn is_evidence(case: &CaseResult) -> bool {
+    case.guarded.assumptions_broken.is_empty() && case.robot_values.is_empty()
+}
+
 fn monitored(id: &str, suite: &SuiteResult, replay: &Replay) -> Claim {
     let reports: Vec<(&CaseResult, &MonitorReport)> = suite
         .cases
@@ -181,13 +189,7 @@ fn monitored(id: &str, suite: &SuiteResult, replay: &Replay) -> Claim {
         .flat_map(|case| case.guarded.monitors.iter().map(move |m| (case, m)))
         .filter(|(_, report)| report.id == id)
         .collect();
-    // A run that breaks an assumption on purpose is no evidence for what rests on it; what it
-    // violates counts all the same.
-    let kept = || {
-        reports
-            .iter()
-            .filter(|(case, _)| case.guarded.assumptions_broken.is_empty())
-    };
+    let kept = || reports.iter().filter(|(case, _)| is_evidence(case));
     let checked = kept().map(|(_, r)| r.checked).sum();
     let engaged: u64 = kept().map(|(_, r)| r.engaged).sum();
     let violations: u64 = reports.iter().map(|(_, r)| r.violation_count).sum();

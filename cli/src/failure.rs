@@ -111,3 +111,29 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     }
     std::fs::write(path, bytes).map_err(|error| Failure::write(path, &error))
 }
+
+/// Writes a file whole or not at all: under another name first, then renamed.
+///
+/// # Errors
+/// [`Exit::BadInput`] if it cannot be written; nothing is left behind then.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let cannot = |error: &std::io::Error| {
+        Failure::input(format!("{}: cannot be written: {error}", path.display()))
+    };
+    let Some(name) = path.file_name() else {
+        return Err(Failure::input(format!(
+            "{}: names no file to write",
+            path.display()
+        )));
+    };
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(name);
+    hidden.push(format!(".haltline-{}", std::process::id()));
+    let unfinished = path.with_file_name(hidden);
+    let written =
+        std::fs::write(&unfinished, bytes).and_then(|()| std::fs::rename(&unfinished, path));
+    written.map_err(|error| {
+        let _ = std::fs::remove_file(&unfinished);
+        cannot(&error)
+    })
+}

@@ -12,11 +12,13 @@ macro_rules! say {
 }
 
 mod args;
+mod barn;
 mod certificate;
 mod certify;
 mod claims;
 mod explain;
 mod failure;
+mod import;
 mod junit;
 mod library;
 mod new;
@@ -29,7 +31,7 @@ mod sena;
 mod terminal;
 mod timing;
 
-use args::{Cli, Command, New};
+use args::{Cli, Command, Import, New};
 use clap::Parser as _;
 use console::style;
 use failure::{Exit, Failure};
@@ -54,6 +56,10 @@ fn dispatch(command: Option<Command>) -> Result<Exit, Failure> {
         Some(Command::Replay(args)) => replay::replay(&args),
         Some(Command::Certify(args)) => certify::certify(&args),
         Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Import {
+            what: Import::Barn(args),
+        }) => import::barn(&args),
+        Some(Command::Barn(args)) => barn::barn(&args),
         None => certify::default_robot(),
     }
 }

@@ -7,8 +7,11 @@ use crate::picture::{png, svg};
 use crate::report::drawing::{self, Subject};
 use crate::report::words;
 use console::style;
+use haltline_robots::Change;
 use haltline_scenarios::batch::{Case, CaseRun, equip, run_case, run_one};
-use haltline_scenarios::result::{Contact, Judgement, MonitorReport, Outcome, RunResult, Stop};
+use haltline_scenarios::result::{
+    Contact, Judgement, MonitorReport, NavigationRecord, Outcome, RunResult, Stop,
+};
 use serde::Serialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -19,6 +22,7 @@ struct Summary<'a> {
     scenario: &'a str,
     title: &'a str,
     robot: &'a str,
+    robot_values: &'a [Change],
     guarded: bool,
     seed: u64,
     contacts: usize,
@@ -27,12 +31,14 @@ struct Summary<'a> {
     time_s: f64,
     at_rest: bool,
     travelled_m: f64,
+    turned_rad: f64,
     min_clearance_m: Option<f64>,
     min_clearance_moving_m: Option<f64>,
     stops: usize,
     stop_details: &'a [Stop],
     contact_details: &'a [Contact],
     monitors: &'a [MonitorReport],
+    navigation: Option<&'a NavigationRecord>,
     naked_contacts: Option<usize>,
     judgement: Option<&'a Judgement>,
 }
@@ -130,6 +136,7 @@ fn print_json(case: &Case, done: &CaseRun, naked: bool) -> Result<(), Failure> {
         scenario: &done.result.name,
         title: &done.result.title,
         robot: &case.scenario.robot,
+        robot_values: &done.result.robot_values,
         guarded: !naked,
         seed: done.result.seed,
         contacts: run.contacts.len(),
@@ -138,12 +145,14 @@ fn print_json(case: &Case, done: &CaseRun, naked: bool) -> Result<(), Failure> {
         time_s: run.time_s,
         at_rest: run.at_rest,
         travelled_m: run.travelled_m,
+        turned_rad: run.turned_rad,
         min_clearance_m: run.min_clearance_m,
         min_clearance_moving_m: run.min_clearance_moving_m,
         stops: run.stops.len(),
         stop_details: &run.stops,
         contact_details: &run.contacts,
         monitors: &run.monitors,
+        navigation: run.navigation.as_ref(),
         naked_contacts: twin.map(|twin| twin.contacts.len()),
         judgement: (!naked).then_some(&done.result.judgement),
     };
@@ -175,17 +184,25 @@ fn print_summary(case: &Case, done: &CaseRun, naked: bool) {
         "with the guard"
     };
     say!("{}  {}", style(&done.result.name).bold(), done.result.title);
-    say!("{} {guard}, seed {}\n", case.robot.name, done.result.seed);
+    say!("{} {guard}, seed {}", case.robot.name, done.result.seed);
+    if let Some(values) = words::robot_values(&done.result.robot_values) {
+        say!("not the shipped robot: {values}");
+    }
+    say!("");
     let end = if run.reached {
         "goal reached"
     } else {
         "goal not reached"
     };
     say!(
-        "  {end} after {:.2} s and {:.2} m",
+        "  {end} after {:.2} s, {:.2} m and {:.0} deg of turning",
         run.time_s,
-        run.travelled_m
+        run.travelled_m,
+        run.turned_rad.to_degrees()
     );
+    if let Some(navigation) = &run.navigation {
+        say!("  {}", words::navigated(navigation));
+    }
     say!(
         "  {}, {} while moving",
         words::count(run.contacts.len(), "contact"),

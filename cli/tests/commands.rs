@@ -172,8 +172,9 @@ fn help_teaches() {
     ] {
         assert!(text.contains(part), "lacks `{part}`");
     }
-    for command in ["certify", "run", "replay", "explain"] {
-        let text = stdout(&haltline(&[command, "--help"]));
+    for command in ["certify", "run", "replay", "explain", "barn", "import barn"] {
+        let words: Vec<&str> = command.split(' ').chain(["--help"]).collect();
+        let text = stdout(&haltline(&words));
         assert!(
             text.contains("Example"),
             "{command} --help lacks an example"

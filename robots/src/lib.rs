@@ -5,6 +5,7 @@
 //! kernel's margins. This crate refuses to guess: every key is required, every
 //! unknown key is an error, and every error says where it is and what to write.
 
+mod change;
 pub mod contract;
 mod error;
 mod kernel_config;
@@ -22,6 +23,7 @@ use std::path::Path;
 
 use haltline::checked::KernelConfig;
 
+pub use change::{Change, ChangeError};
 pub use error::RobotError;
 use error::Source;
 pub use robot::{

@@ -3,26 +3,14 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use haltline_robots::Robot;
 use rayon::prelude::*;
 
-use crate::contact::Judge;
 use crate::controller::{Controller, RobotKernel};
-use crate::engine::{Run, STEP_US, run};
-use crate::file::{Scenario, ScenarioError};
-use crate::math::Pose;
-use crate::populate::populate;
+use crate::engine::{Run, run};
+pub use crate::equip::{Case, equip};
+use crate::pilot::Pilot;
 use crate::result::{CaseResult, FootprintRecord, Outcome, SuiteResult};
 use crate::verdict::{judge, judge_group};
-
-/// A scenario with its robot, ready to run.
-#[derive(Clone, Debug)]
-pub struct Case {
-    /// The scenario.
-    pub scenario: Scenario,
-    /// Its robot, with the scenario's obstacle speed and host death settings.
-    pub robot: Robot,
-}
 
 /// A case that has just finished.
 #[derive(Clone, Copy, Debug)]
@@ -48,63 +36,13 @@ pub struct CaseRun {
     pub naked_trace: Option<String>,
 }
 
-/// Name of a body that the footprint overlaps before anything has moved.
-fn overlapped(scenario: &Scenario, robot: &Robot) -> Option<String> {
-    let world = populate(scenario);
-    let judge = Judge::new(&robot.values.footprint, &world);
-    let start = &scenario.start;
-    let heading = start.heading_deg.get().to_radians();
-    let pose = Pose::new(start.x_m.get(), start.y_m.get(), heading);
-    let distances = judge.distances(&world, &pose, 0.0);
-    let index = distances.iter().position(|distance| *distance <= 0.0)?;
-    world.bodies().get(index).map(|body| body.name.clone())
-}
-
-/// Applies what a scenario says about the robot.
-///
-/// # Errors
-/// The robot stands on a body at the start, the obstacle speed does not fit the kernel, the kernel refuses the robot, or the control period
-/// is no multiple of a dynamics step.
-pub fn equip(scenario: Scenario, robot: &Robot) -> Result<Case, ScenarioError> {
-    let wrong = |message: String| ScenarioError::whole(&scenario.name, message);
-    let speed = scenario.obstacle_speed_mps.get();
-    let mut equipped = robot.with_obstacle_speed(speed).ok_or_else(|| {
-        wrong(format!(
-            "obstacle_speed_mps = {speed} does not fit the kernel; write at most 10"
-        ))
-    })?;
-    if let Some(cover) = scenario.cover_host_death {
-        equipped = equipped
-            .with_cover_host_death(cover)
-            .ok_or_else(|| wrong("cover_host_death does not fit this robot".to_owned()))?;
-    }
-    if let Some(body) = overlapped(&scenario, &equipped) {
-        return Err(wrong(format!(
-            "the robot stands on {body} at the start; move the body, or write another [start]"
-        )));
-    }
-    let period_us = crate::math::microseconds(equipped.values.timing.period_s);
-    if period_us == 0 || !period_us.is_multiple_of(STEP_US) {
-        return Err(wrong(format!(
-            "the control period of {} is {period_us} us; the simulator needs a multiple of {STEP_US} us",
-            robot.name
-        )));
-    }
-    RobotKernel::new(equipped.config)
-        .map_err(|error| wrong(format!("the kernel refuses {}: {error:?}", robot.name)))?;
-    Ok(Case {
-        scenario,
-        robot: equipped,
-    })
-}
-
 /// Runs one case with the guard, or without; none if the kernel refuses the robot.
 #[must_use]
 pub fn run_one(case: &Case, guard_on: bool) -> Option<Run> {
-    let controller: Option<Box<dyn Controller>> = if guard_on {
-        Some(Box::new(RobotKernel::new(case.robot.config).ok()?))
-    } else {
-        None
+    let controller: Option<Box<dyn Controller>> = match (guard_on, case.scenario.navigates()) {
+        (false, _) => None,
+        (true, false) => Some(Box::new(RobotKernel::new(case.robot.config).ok()?)),
+        (true, true) => Some(Box::new(Pilot::new(&case.scenario, &case.robot).ok()?)),
     };
     Some(run(&case.scenario, &case.robot, controller))
 }
@@ -121,6 +59,13 @@ pub fn run_case(case: &Case) -> Option<CaseRun> {
     Some(assemble(case, guarded, naked, excuse))
 }
 
+/// Runs a case with the guard only and judges that; none if the kernel refuses the robot.
+#[must_use]
+pub fn run_guarded(case: &Case) -> Option<CaseRun> {
+    let guarded = run_one(case, true)?;
+    Some(assemble(case, guarded, None, Some("not run")))
+}
+
 fn assemble(case: &Case, guarded: Run, naked: Option<Run>, excuse: Option<&str>) -> CaseRun {
     let scenario = &case.scenario;
     let outline = &case.robot.values.footprint;
@@ -133,6 +78,7 @@ fn assemble(case: &Case, guarded: Run, naked: Option<Run>, excuse: Option<&str>)
             title: scenario.title.clone(),
             requirements: scenario.requirements.clone(),
             robot: scenario.robot.clone(),
+            robot_values: case.changes.clone(),
             seed: scenario.seed,
             obstacle_speed_mps: scenario.obstacle_speed_mps.get(),
             footprint: FootprintRecord {

@@ -8,6 +8,8 @@ use haltline::time::Instant;
 use haltline_robots::{BEAMS, MEMORY, Robot, SCANNERS};
 
 use crate::drive::SetPoint;
+use crate::math::Pose;
+use crate::navigation::Said;
 use crate::odometry::RawOdometry;
 use crate::proposer::RawCommand;
 use crate::sensor::RawScan;
@@ -21,6 +23,8 @@ pub struct TickInputs {
     pub odometry: Option<RawOdometry>,
     /// The newest command.
     pub command: Option<RawCommand>,
+    /// Stamp of the order to follow the route, handed in with every tick in which it stands.
+    pub order_us: Option<u64>,
     /// Emergency stop line.
     pub emergency_stop: bool,
     /// Stamp of a reset.
@@ -31,6 +35,20 @@ pub struct TickInputs {
 pub trait Controller {
     /// One tick.
     fn step(&mut self, inputs: &Inputs<'_>, now: Instant) -> Decision;
+
+    /// The order under which the next tick follows its own route; none: it must not.
+    fn order(&mut self, _stamp: Option<Instant>) {}
+
+    /// Via points of its own route; none if somebody else proposes.
+    fn via_points(&self) -> Option<usize> {
+        None
+    }
+
+    /// What its last tick said of the route; `pose` is the true pose at that tick, `base_us` the
+    /// origin of the host's clock.
+    fn said(&self, _pose: &Pose, _base_us: u64) -> Option<Said> {
+        None
+    }
 
     /// Points it remembers, in metres in its own odometry frame.
     fn remembered(&self) -> Vec<[f64; 2]> {
@@ -47,18 +65,23 @@ impl Controller for RobotKernel {
     }
 
     fn remembered(&self) -> Vec<[f64; 2]> {
-        let (x_um, y_um) = self.track().anchor_um();
-        let anchor_m = [x_um as f64 * 1e-6, y_um as f64 * 1e-6];
-        let points = self.memory().remembered().iter();
-        points
-            .map(|point| {
-                [
-                    anchor_m[0] + f64::from(point.x_mm) * 1e-3,
-                    anchor_m[1] + f64::from(point.y_mm) * 1e-3,
-                ]
-            })
-            .collect()
+        remembered(self)
     }
+}
+
+/// Points that a kernel remembers, in metres in its odometry frame.
+pub(crate) fn remembered(kernel: &RobotKernel) -> Vec<[f64; 2]> {
+    let (x_um, y_um) = kernel.track().anchor_um();
+    let anchor_m = [x_um as f64 * 1e-6, y_um as f64 * 1e-6];
+    let points = kernel.memory().remembered().iter();
+    points
+        .map(|point| {
+            [
+                anchor_m[0] + f64::from(point.x_mm) * 1e-3,
+                anchor_m[1] + f64::from(point.y_mm) * 1e-3,
+            ]
+        })
+        .collect()
 }
 
 /// Calls a controller with raw data through the kernel's own conversion.
@@ -81,6 +104,7 @@ pub fn tick(
             })
         })
         .collect();
+    controller.order(inputs.order_us.map(Instant::from_us));
     let inputs = Inputs {
         scans: &scans,
         odometry: inputs.odometry.map_or(Reading::Absent, |o| odometry(&o)),

@@ -6,17 +6,21 @@
 //! the kernel's geometry: the kernel is only ever called through its public door.
 
 pub mod assumption;
+pub mod barn;
 pub mod batch;
 pub mod contact;
 pub mod controller;
 pub mod drive;
 pub mod engine;
+pub mod equip;
 pub mod faults;
 pub mod file;
 pub mod math;
 pub mod monitor;
+pub mod navigation;
 pub mod noise;
 pub mod odometry;
+pub mod pilot;
 pub mod populate;
 pub mod proposer;
 pub mod raycast;

@@ -17,12 +17,12 @@ pub fn populate(scenario: &Scenario) -> World {
         .boxes
         .iter()
         .enumerate()
-        .map(|(i, body)| rectangle(i, body));
+        .map(|(i, body)| rectangle(i, body.get_ref()));
     let circles = scenario
         .circle
         .iter()
         .enumerate()
-        .map(|(i, body)| disc(i, body));
+        .map(|(i, body)| disc(i, body.get_ref()));
     World::new(walls.chain(boxes).chain(circles).collect())
 }
 

@@ -4,7 +4,7 @@ use haltline_robots::{Kinematics, Robot};
 
 use crate::drive::SetPoint;
 use crate::file::value::floats;
-use crate::file::{ProposerKind, Scenario, Step};
+use crate::file::{NakedPath, ProposerKind, Scenario, Step};
 use crate::math::{Pose, wrap};
 
 /// A desired motion as it leaves the planner.
@@ -23,6 +23,8 @@ pub struct GoalDisc {
     pub centre: [f64; 2],
     /// Radius.
     pub radius: f64,
+    /// Whether it only counts once the robot rests inside.
+    pub at_rest: bool,
 }
 
 impl GoalDisc {
@@ -32,6 +34,7 @@ impl GoalDisc {
         scenario.goal.map(|goal| Self {
             centre: floats(goal.position_m),
             radius: goal.radius_m.get(),
+            at_rest: goal.at_rest,
         })
     }
 
@@ -42,12 +45,28 @@ impl GoalDisc {
     }
 }
 
+/// The naked twin has passed a via point within this distance.
+const VIA_PASSED_M: f64 = 0.2;
+
+/// The via points of the naked twin, in the world.
+fn naked_via(scenario: &Scenario) -> Vec<[f64; 2]> {
+    let path = scenario.naked.as_ref().and_then(|n| n.get_ref().path);
+    match path.unwrap_or_default() {
+        NakedPath::Goal => Vec::new(),
+        NakedPath::Via => scenario.via_m(),
+    }
+}
+
 /// Proposes a motion at every tick.
 #[derive(Clone, Debug)]
 pub struct Driver {
     kind: ProposerKind,
     steps: Vec<Step>,
     goal: Option<GoalDisc>,
+    /// Points that the naked twin of a navigate scenario passes before it heads for the goal.
+    via: Vec<[f64; 2]>,
+    /// How many of them lie behind it.
+    passed: usize,
     speed: f64,
     gain: f64,
     turn_rate_max: f64,
@@ -59,13 +78,24 @@ impl Driver {
     #[must_use]
     pub fn new(robot: &Robot, scenario: &Scenario) -> Self {
         let proposer = scenario.proposer.get_ref();
+        let limits = &robot.values.limits;
+        let speed = match proposer.kind {
+            // Only the naked twin asks: a reckless driver in the kernel's place.
+            ProposerKind::Navigate => {
+                let naked = scenario.naked.as_ref().and_then(|n| n.get_ref().speed_mps);
+                naked.map_or(limits.speed_forward_mps, |v| v.get())
+            }
+            _ => proposer.speed_mps.map_or(0.0, |v| v.get()),
+        };
         Self {
+            via: naked_via(scenario),
+            passed: 0,
             kind: proposer.kind,
             steps: proposer.step.iter().map(|step| *step.get_ref()).collect(),
             goal: GoalDisc::of(scenario),
-            speed: proposer.speed_mps.map_or(0.0, |v| v.get()),
+            speed,
             gain: proposer.heading_gain_per_s.map_or(1.5, |v| v.get()),
-            turn_rate_max: robot.values.limits.angular_speed_radps,
+            turn_rate_max: limits.angular_speed_radps,
             curvature_max: match robot.values.kinematics {
                 Kinematics::Differential => None,
                 Kinematics::Ackermann(steering) => Some(1.0 / steering.turning_radius_m),
@@ -75,9 +105,9 @@ impl Driver {
 
     /// What it wants at `pose`, `since_s` after the robot was first allowed to move.
     #[must_use]
-    pub fn propose(&self, pose: &Pose, since_s: f64) -> SetPoint {
+    pub fn propose(&mut self, pose: &Pose, since_s: f64) -> SetPoint {
         match self.kind {
-            ProposerKind::Reckless => self.charge(pose),
+            ProposerKind::Reckless | ProposerKind::Navigate => self.charge(pose),
             ProposerKind::Script => self.play(since_s),
         }
     }
@@ -88,12 +118,21 @@ impl Driver {
         self.motion(0.0, 0.0, 0.0)
     }
 
-    /// Straight for the goal; turns on the spot first where the goal lies behind.
-    fn charge(&self, pose: &Pose) -> SetPoint {
+    /// Straight for the next point, then the goal; turns on the spot first where that lies behind.
+    fn charge(&mut self, pose: &Pose) -> SetPoint {
         let Some(goal) = self.goal else {
             return self.rest();
         };
-        let [dx, dy] = [goal.centre[0] - pose.x, goal.centre[1] - pose.y];
+        let away = |[x, y]: [f64; 2]| libm::hypot(x - pose.x, y - pose.y);
+        while self
+            .via
+            .get(self.passed)
+            .is_some_and(|via| away(*via) < VIA_PASSED_M)
+        {
+            self.passed += 1;
+        }
+        let [x, y] = self.via.get(self.passed).copied().unwrap_or(goal.centre);
+        let [dx, dy] = [x - pose.x, y - pose.y];
         let error = wrap(libm::atan2(dy, dx) - pose.theta);
         let omega = (self.gain * error).clamp(-self.turn_rate_max, self.turn_rate_max);
         let v = match self.curvature_max {

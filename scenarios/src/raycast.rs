@@ -33,23 +33,75 @@ pub struct Return {
     pub body: usize,
 }
 
+/// The bodies in the order of their distance, so that a beam need not ask those behind its return.
+#[derive(Clone, Debug)]
+pub struct Order {
+    /// Body, the least distance at which it may be met, the radius that holds it; nearest first.
+    bodies: Vec<(usize, f64, f64)>,
+}
+
+impl Order {
+    /// The visible bodies as seen from `origin` at time `t_s`; good for as long as neither they nor
+    /// the origin have moved by more than `slack_m` against each other.
+    #[must_use]
+    pub fn new(world: &World, t_s: f64, origin: [f64; 2], slack_m: f64) -> Self {
+        let visible = world.bodies().iter().enumerate();
+        let mut bodies: Vec<_> = visible
+            .filter(|(_, body)| !body.invisible)
+            .map(|(index, body)| {
+                let pose = world.pose(index, t_s);
+                let away = libm::hypot(pose.x - origin[0], pose.y - origin[1]);
+                let reach = body.shape.reach();
+                (index, away - reach - slack_m, reach)
+            })
+            .collect();
+        bodies.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        Self { bodies }
+    }
+}
+
 /// Nearest return of `ray` at time `t_s` within `range_max`; invisible bodies let it through.
 #[must_use]
 pub fn cast(world: &World, t_s: f64, ray: &Ray, range_max: f64) -> Option<Return> {
+    cast_in_order(
+        world,
+        t_s,
+        ray,
+        range_max,
+        &Order::new(world, t_s, ray.origin, 0.0),
+    )
+}
+
+/// The same with an order that is still good; of two returns at one distance the later body's counts.
+#[must_use]
+pub fn cast_in_order(
+    world: &World,
+    t_s: f64,
+    ray: &Ray,
+    range_max: f64,
+    order: &Order,
+) -> Option<Return> {
     let mut best: Option<Return> = None;
-    for (index, body) in world.bodies().iter().enumerate() {
-        if body.invisible {
-            continue;
-        }
+    for (index, near, reach) in &order.bodies {
         let limit = best.map_or(range_max, |hit| hit.range);
-        let pose = world.pose(index, t_s);
-        if misses_bounds(ray, &pose, body.shape.reach(), limit) {
+        if *near > limit {
+            break;
+        }
+        let Some(body) = world.bodies().get(*index) else {
+            continue;
+        };
+        let pose = world.pose(*index, t_s);
+        if misses_bounds(ray, &pose, *reach, limit) {
             continue;
         }
         if let Some(range) = range_to(ray, &body.shape, &pose)
             && range <= limit
+            && (range < limit || best.is_none_or(|hit| *index > hit.body))
         {
-            best = Some(Return { range, body: index });
+            best = Some(Return {
+                range,
+                body: *index,
+            });
         }
     }
     best

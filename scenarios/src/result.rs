@@ -1,6 +1,9 @@
 //! What a run leaves behind: everything a report needs, and nothing that depends on the machine.
 
+use haltline_robots::Change;
 use serde::Serialize;
+
+pub use crate::navigation::{NavigationRecord, ProgressChange, ProgressRecord, RefusalRecord};
 
 /// Pose of the rotation centre in the world: metres and radians, REP 103.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -142,6 +145,8 @@ pub struct WorldRecord {
     pub goal_m: Option<[f64; 2]>,
     /// Goal radius.
     pub goal_radius_m: Option<f64>,
+    /// Points to pass on the way.
+    pub via_m: Vec<[f64; 2]>,
 }
 
 /// A tick at which a monitored requirement did not hold.
@@ -210,6 +215,8 @@ pub struct RunResult {
     pub remembered_m: Vec<[f64; 2]>,
     /// One report for each monitor; empty in a naked run.
     pub monitors: Vec<MonitorReport>,
+    /// What the kernel's own navigator made of its route; none where somebody else proposes.
+    pub navigation: Option<NavigationRecord>,
     /// Assumptions the simulator broke.
     pub assumptions_broken: Vec<BrokenAssumption>,
 }
@@ -260,6 +267,8 @@ pub struct CaseResult {
     pub requirements: Vec<String>,
     /// Robot file stem.
     pub robot: String,
+    /// Values in which the robot differs from its file.
+    pub robot_values: Vec<Change>,
     /// Seed of all noise.
     pub seed: u64,
     /// Obstacle speed bound given to the guard.

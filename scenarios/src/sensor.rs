@@ -5,7 +5,7 @@ use haltline_robots::{Encoding, Robot, Scanner};
 use crate::file::Scenario;
 use crate::math::{Pose, microseconds, seconds};
 use crate::noise::Noise;
-use crate::raycast::{Ray, cast};
+use crate::raycast::{Order, Ray, cast_in_order};
 use crate::world::World;
 
 /// A sweep as the driver delivers it, with what only the simulator knows.
@@ -136,6 +136,9 @@ impl Sensors {
     }
 }
 
+/// What an order of bodies forgives on top of every known motion, metres.
+const SLACK_M: f64 = 0.01;
+
 /// One sweep begun at `begun_us`.
 fn take(
     index: usize,
@@ -149,13 +152,21 @@ fn take(
     let beams = usize::from(scanner.beams);
     let mut ranges_m = Vec::with_capacity(beams);
     let mut bodies = Vec::with_capacity(beams);
+    let begun = pose_at(begun_us).then(Pose::new(scanner.x_m, scanner.y_m, 0.0));
+    let ended = pose_at(begun_us + model.sweep_us).then(Pose::new(scanner.x_m, scanner.y_m, 0.0));
+    // The scanner's own way is short, so its ends bound it; twice over, and what the bodies move.
+    let own_m = libm::hypot(ended.x - begun.x, ended.y - begun.y);
+    let fastest = world.bodies().iter().map(crate::world::Body::top_speed);
+    let others_m = fastest.fold(0.0, f64::max) * seconds(model.sweep_us);
+    let slack_m = 2.0 * own_m + others_m + SLACK_M;
+    let order = Order::new(world, seconds(begun_us), [begun.x, begun.y], slack_m);
     for beam in 0..beams {
         let time_us = beam_time_us(begun_us, model.sweep_us, beam, beams);
         let heading = scanner.first_beam_rad() + scanner.increment_rad() * beam as f64;
         let mount = Pose::new(scanner.x_m, scanner.y_m, heading);
         let from = pose_at(time_us).then(mount);
         let ray = Ray::new([from.x, from.y], from.theta);
-        let hit = cast(world, seconds(time_us), &ray, model.range_max_m);
+        let hit = cast_in_order(world, seconds(time_us), &ray, model.range_max_m, &order);
         // Drawn for every beam, so that one lost beam does not shift the noise of all others.
         let error = model.bias_m + model.sigma_m * noise.normal();
         let lost = noise.unit() < model.dropout;

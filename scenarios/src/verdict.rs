@@ -1,5 +1,8 @@
 //! Pass or fail, in sentences.
 
+mod course;
+mod navigation;
+
 use crate::file::{ContactExpectation, Expect, Scenario};
 use crate::result::{CaseResult, Contact, GroupResult, Judgement, Outcome, RunResult};
 
@@ -40,8 +43,9 @@ pub fn judge(scenario: &Scenario, guarded: &RunResult, naked: Option<&RunResult>
     monitors(&mut sentences, guarded);
     contacts(&mut sentences, &scenario.expect, guarded);
     assumptions(&mut sentences, &scenario.expect, guarded);
-    course(&mut sentences, &scenario.expect, guarded);
+    course::judge(&mut sentences, &scenario.expect, guarded);
     stops(&mut sentences, scenario, guarded);
+    navigation::judge(&mut sentences, &scenario.expect, guarded);
     if let Some(naked) = naked {
         twin(&mut sentences, scenario, naked);
     }
@@ -125,68 +129,6 @@ fn assumptions(sentences: &mut Sentences, expect: &Expect, run: &RunResult) {
         sentences.demand(named.contains(&id.as_str()), || {
             format!("{id} should be broken, but the simulator kept it.")
         });
-    }
-}
-
-fn course(sentences: &mut Sentences, expect: &Expect, run: &RunResult) {
-    if let Some(reached) = expect.reached {
-        sentences.demand(run.reached == reached, || {
-            format!("Goal reached: {}, expected: {reached}.", run.reached)
-        });
-    }
-    if let Some(least) = expect.travelled_min_m {
-        sentences.demand(run.travelled_m >= least.get(), || {
-            format!(
-                "Travelled {:.2} m, expected at least {:.2} m.",
-                run.travelled_m,
-                least.get()
-            )
-        });
-    }
-    if let Some(least) = expect.turned_min_rad {
-        sentences.demand(run.turned_rad >= least.get(), || {
-            format!(
-                "Turned {:.2} rad, expected at least {:.2} rad.",
-                run.turned_rad,
-                least.get()
-            )
-        });
-    }
-    let Some(before) = &expect.stopped_before else {
-        return;
-    };
-    sentences.demand(stands(run), || {
-        "The robot still moves at the end.".to_owned()
-    });
-    if let Some(least) = before.clearance_m {
-        let clearance = run.samples.last().and_then(|sample| sample.clearance_m);
-        let enough = clearance.is_some_and(|clearance| clearance >= least.get());
-        sentences.demand(enough, || {
-            let found = clearance.map_or_else(
-                || "There is no body to keep clear of".to_owned(),
-                |clearance| format!("Stopped {clearance:.3} m from the nearest body"),
-            );
-            format!("{found}, expected at least {:.3} m.", least.get())
-        });
-    }
-    let beyond = |value: fn(&crate::result::Sample) -> f64| {
-        run.samples
-            .iter()
-            .map(value)
-            .fold(f64::NEG_INFINITY, f64::max)
-    };
-    for (name, limit, farthest) in [
-        ("x", before.x_m, beyond(|sample| sample.pose.x_m)),
-        ("y", before.y_m, beyond(|sample| sample.pose.y_m)),
-    ] {
-        if let Some(limit) = limit {
-            sentences.demand(farthest <= limit.get(), || {
-                format!(
-                    "Went to {name} = {farthest:.3} m, expected to stop before {:.3} m.",
-                    limit.get()
-                )
-            });
-        }
     }
 }
 

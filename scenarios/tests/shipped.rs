@@ -53,7 +53,7 @@ fn crossing_has_both_sides_at_twenty_timings() {
     for side in [left, right] {
         let delays: Vec<f64> = side
             .iter()
-            .filter_map(|s| s.circle[0].motion.as_ref()?.get_ref().delay_s)
+            .filter_map(|s| s.circle[0].get_ref().motion.as_ref()?.get_ref().delay_s)
             .map(|delay| delay.get())
             .collect();
         // Robot and object meet for 1.6667 s; the sweep is -1.5 s to +1.5 s around it.
@@ -141,4 +141,48 @@ fn uncovered_host_death_is_named() {
         judgement.sentences
     );
     insta::assert_snapshot!("host_death_uncovered", summary(&run.result.guarded));
+}
+
+/// What the navigator says at the end, coarse enough to survive a change of noise.
+fn navigated(run: &RunResult) -> String {
+    let navigation = run.navigation.as_ref().expect("the kernel drives itself");
+    let end = &navigation.end;
+    format!(
+        "{}end: {}{}\nvia points: {}\n",
+        summary(run),
+        end.kind,
+        end.reason
+            .as_ref()
+            .map_or_else(String::new, |reason| format!(" by {reason}")),
+        navigation.via_points
+    )
+}
+
+#[test]
+fn kernel_drives_through_the_widest_passage_as_it_did() {
+    let run = run_case(&case("navigate_passages")).expect("the kernel takes the robot");
+    let judgement = &run.result.judgement;
+    assert_eq!(
+        judgement.outcome,
+        Outcome::Pass,
+        "{:?}",
+        judgement.sentences
+    );
+    insta::assert_snapshot!("navigate_passages", navigated(&run.result.guarded));
+}
+
+#[test]
+fn kernel_says_why_it_stops_before_a_passage_that_is_too_narrow() {
+    let run = run_case(&case("navigate_passages_closed")).expect("the kernel takes the robot");
+    let judgement = &run.result.judgement;
+    assert_eq!(
+        judgement.outcome,
+        Outcome::Pass,
+        "{:?}",
+        judgement.sentences
+    );
+    let text = navigated(&run.result.guarded);
+    // How often it tries again before it stands is a matter of tuning, so only the ends are kept.
+    let lines: Vec<&str> = text.lines().filter(|line| !line.contains(" s ")).collect();
+    insta::assert_snapshot!("navigate_passages_closed", lines.join("\n"));
 }

@@ -21,6 +21,7 @@ fn run(monitors: Vec<MonitorReport>) -> RunResult {
         world: WorldRecord::default(),
         remembered_m: Vec::new(),
         monitors,
+        navigation: None,
         assumptions_broken: Vec::new(),
     }
 }
@@ -49,6 +50,7 @@ fn suite(guarded: RunResult, naked: Option<RunResult>) -> SuiteResult {
             title: "Poles".into(),
             requirements: vec![],
             robot: "seekur_jr".into(),
+            robot_values: Vec::new(),
             seed: 1,
             obstacle_speed_mps: 0.0,
             footprint: FootprintRecord::default(),
@@ -210,4 +212,25 @@ fn nothing_is_worded_as_proof() {
             .iter()
             .all(|claim| !claim.evidence.words.contains("proved"))
     );
+}
+
+#[test]
+fn a_run_with_other_values_of_the_robot_is_no_evidence_but_can_speak_against() {
+    let changed = |violations: &[f64]| {
+        let mut suite = suite(run(vec![monitor("CLAIM", 10, violations)]), None);
+        let mut change = haltline_robots::Change::new("tolerances.tracking_m", "0.005");
+        change.before = "0.020".to_owned();
+        suite.cases[0].robot_values = vec![change];
+        let claims = from_suite(&suite, &replay());
+        claims
+            .into_iter()
+            .find(|claim| claim.id == "CLAIM")
+            .expect("it is made")
+    };
+    let quiet = changed(&[]);
+    assert_eq!(
+        (quiet.status, quiet.evidence.runs),
+        (Status::NotCheckable, 0)
+    );
+    assert_eq!(changed(&[0.4]).status, Status::Failed);
 }

@@ -22,9 +22,19 @@ pub fn write(page: &mut String, certificate: &Certificate, suite: &SuiteResult) 
     let single: Vec<&CaseResult> = suite.cases.iter().filter(|case| !in_sweep(case)).collect();
     let (breaking, keeping): (Vec<&CaseResult>, Vec<&CaseResult>) =
         single.into_iter().partition(|case| breaks(case));
-    cards(page, &keeping, certificate);
+    let (other, own): (Vec<&CaseResult>, Vec<&CaseResult>) = keeping
+        .into_iter()
+        .partition(|case| !case.robot_values.is_empty());
+    cards(page, &own, certificate);
     for group in &suite.groups {
         sweeps::write(page, group, suite, certificate);
+    }
+    if !other.is_empty() {
+        page.push_str(
+            "<h2>Runs with other values of the robot</h2><p class=\"soft\">Each card says which. They are \
+             evidence for no claim about this robot; what a monitor objects to in them counts all the same.</p>",
+        );
+        cards(page, &other, certificate);
     }
     if !breaking.is_empty() {
         page.push_str(
@@ -160,6 +170,12 @@ fn facts(page: &mut String, case: &CaseResult) {
     facts.push(("contacts while moving", run.moving_contacts().to_string()));
     if let Some(gap_m) = run.min_clearance_moving_m {
         facts.push(("nearest while moving", words::metres(gap_m)));
+    }
+    if let Some(navigation) = &run.navigation {
+        facts.push(("drives itself", words::navigated(navigation)));
+    }
+    if let Some(values) = words::robot_values(&case.robot_values) {
+        facts.push(("not the shipped robot", values));
     }
     let bumps = run.contacts.len() - run.moving_contacts();
     if bumps > 0 {

@@ -46,6 +46,16 @@ pub fn write(
         };
         let _ = write!(page, "<p class=\"{class}\">{}</p>", escape(sentence));
     }
+    if let Some(values) = cases
+        .first()
+        .and_then(|case| words::robot_values(&case.robot_values))
+    {
+        let _ = write!(
+            page,
+            "<p class=\"small\">Not the shipped robot, and evidence for no claim about it: {}</p>",
+            escape(&values)
+        );
+    }
     page.push_str("<div class=\"thumbs\">");
     for case in cases {
         let record = certificate

@@ -59,6 +59,7 @@ fn world() -> WorldRecord {
         ],
         goal_m: Some([7.0, 0.3]),
         goal_radius_m: Some(0.25),
+        via_m: vec![[5.0, 0.2]],
     }
 }
 
@@ -143,6 +144,7 @@ fn run(guarded: bool, stop_at: f64) -> RunResult {
                 violations: vec![],
             })
             .collect(),
+        navigation: None,
         assumptions_broken: vec![BrokenAssumption {
             id: "A-OBSTACLE".into(),
             what: "a ball at 3 m/s".into(),
@@ -157,6 +159,7 @@ fn case(name: &str, group: &str, stop_at: f64) -> CaseResult {
         title: "A ball crosses the corridor & hides".into(),
         requirements: vec!["ZONE-01".into()],
         robot: "seekur_jr".into(),
+        robot_values: Vec::new(),
         seed: 7,
         obstacle_speed_mps: 1.0,
         footprint: FootprintRecord {

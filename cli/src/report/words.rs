@@ -1,7 +1,8 @@
 //! The same words everywhere: terminal, report and certificate.
 
 use crate::picture::Style;
-use haltline_scenarios::result::{CaseResult, DecisionChange, RunResult, Stop};
+use haltline_robots::Change;
+use haltline_scenarios::result::{CaseResult, DecisionChange, NavigationRecord, RunResult, Stop};
 
 /// A name of the kernel, in whichever case it was written, as `snake_case`.
 #[must_use]
@@ -94,6 +95,44 @@ pub fn outcome(case: &CaseResult) -> String {
 #[must_use]
 pub fn nearest(run: &RunResult) -> Option<String> {
     run.min_clearance_m.map(metres)
+}
+
+/// Where a robot differs from its file, if it does.
+#[must_use]
+pub fn robot_values(changes: &[Change]) -> Option<String> {
+    let one =
+        |change: &Change| format!("{} = {} (was {})", change.key, change.value, change.before);
+    let all: Vec<String> = changes.iter().map(one).collect();
+    (!all.is_empty()).then(|| all.join(", "))
+}
+
+/// What the kernel's own navigator said at the end, and how often the guard contradicted it.
+#[must_use]
+pub fn navigated(navigation: &NavigationRecord) -> String {
+    let end = &navigation.end;
+    let end = match (end.kind.as_str(), &end.reason, end.via) {
+        ("blocked", Some(why), _) => {
+            let since = end
+                .since_s
+                .map_or_else(String::new, |t| format!(" since {t:.1} s"));
+            let point = end.point_m.map_or_else(String::new, |[x, y]| {
+                format!(", by a point at ({x:.2}, {y:.2})")
+            });
+            format!("blocked: {}{since}{point}", reason(why))
+        }
+        ("driving", _, Some(via)) => {
+            format!(
+                "driving, {via} of {} passed",
+                count(navigation.via_points, "via point")
+            )
+        }
+        (kind, _, _) => kind.to_owned(),
+    };
+    let refused = usize::try_from(navigation.refused).unwrap_or(usize::MAX);
+    format!(
+        "{end}; the guard refused {} of the planner",
+        count(refused, "candidate")
+    )
 }
 
 /// A length for people: millimetres below one metre.

@@ -2,7 +2,7 @@
 
 use super::arc::Course;
 use super::arc::{Clearance, Turn};
-use super::lanes::{LANES, Lane, SPEEDS};
+use super::lanes::{LANES, Lane, PRESENT, SPEEDS};
 use super::margin::{rate_for, worst_stop};
 use super::objective::{Sighting, score};
 use super::survey::Survey;
@@ -73,7 +73,7 @@ impl Choice<'_> {
             // Where no way leads on, a small turn towards the goal may open one.
             best = self.best(aim, enough.min(ALIGNED_LEAST_RAD));
         }
-        let plan = list(&mut best);
+        let plan = list(&mut best, self.hold(aim));
         if plan.count == 0 {
             return Plan::without_candidates(Outcome::Blocked(self.blocker(aim)));
         }
@@ -145,18 +145,6 @@ impl Choice<'_> {
         Some(eased).filter(Interval::is_some)
     }
 
-    /// How much of the look-ahead (or the way to the goal) `lane` leaves open at creeping speed, 0–1.
-    fn open(&self, lane: &Lane, ahead: Clearance) -> f64 {
-        let Clearance::Contact(travel) = ahead else {
-            return 1.0;
-        };
-        let Course::Arc { .. } = lane.course else {
-            return 1.0;
-        };
-        let reach = self.situation.lookahead_m().min(self.sighting.distance_m);
-        if travel < reach { travel / reach } else { 1.0 }
-    }
-
     fn best_of(&self, index: usize, lane: &Lane, aim: Aim, enough: f64) -> Option<Best> {
         if !lane.rates.is_some() {
             return None;
@@ -168,7 +156,6 @@ impl Choice<'_> {
             self.rates(lane, aim, enough)?,
             clearance.nearer(ahead),
         )?;
-        let open = self.open(lane, ahead);
         let mut found: Option<Best> = None;
         for step in 0..SPEEDS {
             let part = f64::from(u8::try_from(step).unwrap_or(0)) / 10.0;
@@ -187,7 +174,6 @@ impl Choice<'_> {
                     self.sighting,
                     (index, lane),
                     rate,
-                    open,
                 ),
                 clearance,
             };
@@ -202,6 +188,28 @@ impl Choice<'_> {
             });
         }
         found
+    }
+
+    /// Going on as commanded, where that is admissible: what the guard accepted a tick ago.
+    fn hold(&self, aim: Aim) -> Option<Candidate> {
+        let velocity = self.situation.velocity;
+        let lane = self.lanes.get(PRESENT)?;
+        let clearance = self.survey.firm.clearance(PRESENT, lane);
+        let goes_on = aim == Aim::Position
+            && velocity.linear_mps > 0.0
+            && lane.rates.contains(velocity.linear_mps)
+            && self.is_admissible(velocity, clearance);
+        goes_on.then(|| Candidate {
+            velocity,
+            score: score(
+                self.situation,
+                self.survey,
+                self.sighting,
+                (PRESENT, lane),
+                velocity.linear_mps,
+            ),
+            clearance,
+        })
     }
 
     /// V_a: whether the robot can stop within `clearance`, whatever it was told before (Loh 4.5).
@@ -260,16 +268,24 @@ fn is_apart(one: Option<f64>, other: Option<f64>, least: f64) -> bool {
     }
 }
 
-/// The best of all lanes in order, curvatures apart from each other; last, the slowest sample
-/// of the best lane. Of equal scores the earlier lane comes first.
-fn list(best: &mut [Option<Best>; LANES]) -> Plan {
+/// The best of all lanes in order, curvatures apart from each other; after the first, `hold`; last,
+/// the slowest sample of the best lane. Of equal scores the earlier lane comes first.
+fn list(best: &mut [Option<Best>; LANES], mut hold: Option<Candidate>) -> Plan {
     let mut plan = Plan::without_candidates(Outcome::Moving);
     let curvatures = || best.iter().flatten().filter_map(|one| one.curvature_per_m);
     let least = curvatures().fold(f64::INFINITY, f64::min);
     let largest = curvatures().fold(f64::NEG_INFINITY, f64::max);
     let gap = (largest - least).max(0.0) * APART;
     let mut slowest: Option<Candidate> = None;
+    let mut first = Velocity::default();
     for slot in &mut plan.candidates {
+        if plan.count == 1
+            && let Some(hold) = hold.take().filter(|hold| hold.velocity != first)
+        {
+            *slot = hold;
+            plan.count = 2;
+            continue;
+        }
         let chosen = best
             .iter()
             .flatten()
@@ -286,6 +302,9 @@ fn list(best: &mut [Option<Best>; LANES]) -> Plan {
             (Some(one), None) => one.candidate,
         };
         *slot = next;
+        if plan.count == 0 {
+            first = next.velocity;
+        }
         plan.count = plan.count.saturating_add(1);
         let Some(chosen) = chosen.filter(|_| !last) else {
             break;

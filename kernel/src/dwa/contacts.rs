@@ -19,6 +19,8 @@ const SLACK: f64 = 1e-6;
 const CORNER_GROWTH: f64 = 1.5;
 /// How slowly a motion in flight may come nearer to a point without spoiling all that follow, m/s.
 const SLOWLY_MPS: f64 = 5e-3;
+/// What the guard's rounding may add to a margin, m.
+const SHELL_M: f64 = 5e-4;
 /// A point this near to an edge lies on it, m.
 const ON_EDGE_M: f64 = 1e-6;
 
@@ -225,17 +227,15 @@ fn contact_key(situation: &Situation<'_>, lane: &Lane, swept: &Swept, obstacle: 
     let inflated = swept.rect.inflated(obstacle.inflation_m);
     let rect = if inflated.contains(point) {
         let outside = situation.footprint.outside_m(point);
-        let least = if situation.is_at_rest() {
-            0.0
-        } else {
-            swept.start_m + obstacle.inflation_m
-        };
+        let start = swept.start_m + obstacle.inflation_m;
+        // At rest the guard excuses what lies within the margin of the start; it decides.
+        let excused = situation.is_at_rest() && outside > 0.0;
         let reached = situation.footprint.inflated(outside);
         let mut possible = situation.possible();
-        if outside <= least
+        if (outside <= start && !excused)
             || approaches(lane.direction(), &reached, point, 0.0)
             || possible.any(|motion| approaches(motion, &reached, point, SLOWLY_MPS))
-            || (!situation.is_at_rest() && catches_up(situation, lane, swept, obstacle))
+            || (!excused && catches_up(situation, lane, swept, obstacle))
         {
             return 0.0;
         }
@@ -262,7 +262,7 @@ fn catches_up(situation: &Situation<'_>, lane: &Lane, swept: &Swept, obstacle: O
             Course::Spot(Turn::Left) => ([0.0; 2], travel),
             Course::Spot(Turn::Right) => ([0.0; 2], -travel),
         };
-        let grown = swept.start_m + (end_m - swept.start_m) * part + obstacle.inflation_m;
+        let grown = swept.start_m + (end_m - swept.start_m) * part + obstacle.inflation_m + SHELL_M;
         let seen = seen_from(place, heading, obstacle.position);
         situation.footprint.inflated(grown).contains(seen)
     })

@@ -14,6 +14,8 @@ pub const SPEEDS: usize = 11;
 pub const LANES: usize = 63;
 /// Curvatures spread evenly; the others are straight on, the goal's arc and the present one.
 const SPREAD: u16 = 58;
+/// The lane of the present curvature.
+pub(super) const PRESENT: usize = 2;
 /// Part of the largest speed that the most curved sample must still allow.
 const SLOWEST_PART: f64 = 0.125;
 /// How many periods before the last moment slowing down begins.
@@ -219,8 +221,7 @@ fn driving(situation: &Situation<'_>, window: &DynamicWindow, curvature_per_m: f
         rect: situation.footprint.inflated(inflation.end_m),
         start_m: inflation.start_m,
         horizon,
-        horizon_ahead: (stop * AHEAD_FACTOR / situation.tuning.comfort)
-            .max(situation.lookahead_m()),
+        horizon_ahead: stop * AHEAD_FACTOR / situation.tuning.comfort,
     }
 }
 

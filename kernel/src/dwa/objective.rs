@@ -87,7 +87,6 @@ pub(super) fn score(
     sighting: Sighting,
     (index, lane): (usize, &Lane),
     rate: f64,
-    open: f64,
 ) -> f64 {
     let tuning = &situation.tuning;
     // Not cut at the first contact: a path into a wall must not look good for ending early,
@@ -100,7 +99,7 @@ pub(super) fn score(
     };
     let stops = situation.goal.arrival == Arrival::Stop;
     let near_goal = stops && sighting.distance_m < tuning.goal_near_m;
-    tuning.heading_weight * open * head(situation, sighting, lane, travel)
+    tuning.heading_weight * head(situation, sighting, lane, travel)
         + tuning.clearance_weight * clear(situation, near_m)
         + tuning.speed_weight * vel(speed, situation.limits.speed_mps, near_goal)
 }

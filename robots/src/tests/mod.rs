@@ -1,5 +1,6 @@
 //! The shipped files parse to the pinned figures; every rule refuses what it should.
 
+mod change;
 mod contract;
 mod conversion;
 mod refusals;

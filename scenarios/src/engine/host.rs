@@ -4,6 +4,7 @@ use haltline::decision::{Decision, StopStatus};
 use haltline_robots::Robot;
 
 use super::Engine;
+use super::operator::{Operator, Route};
 use crate::assumption::Broken;
 use crate::controller::{Controller, TickInputs, set_point, tick};
 use crate::drive::SetPoint;
@@ -11,8 +12,9 @@ use crate::faults::Faults;
 use crate::file::Scenario;
 use crate::math::{microseconds, seconds};
 use crate::monitor::{DecisionRecord, Monitors, Tick, Touch};
+use crate::navigation::NavigationRecord;
 use crate::proposer::{Driver, RawCommand};
-use crate::result::MonitorReport;
+use crate::result::RunResult;
 
 /// State of the host.
 pub(super) struct Host<'a> {
@@ -28,55 +30,11 @@ pub(super) struct Host<'a> {
     honours_expiry: bool,
     /// When the robot was first allowed to move.
     released_us: Option<u64>,
+    /// Whether the controller follows a route of its own, and since when it is ordered to.
+    route: Option<Route>,
+    navigation: Option<NavigationRecord>,
     sent: SetPoint,
     decision: Option<DecisionRecord>,
-}
-
-/// Resets and the emergency stop line.
-struct Operator {
-    /// Times of resets still to be given; `None` waits for the robot to be able to take one.
-    resets_us: Option<Vec<u64>>,
-    lines_us: Vec<[u64; 2]>,
-    wait_us: u64,
-}
-
-impl Operator {
-    fn new(scenario: &Scenario, robot: &Robot) -> Self {
-        let times = |list: &Vec<crate::file::value::NonNegative>| {
-            list.iter().map(|t| microseconds(t.get())).collect()
-        };
-        let stops = &scenario.operator.emergency_stops_s;
-        Self {
-            resets_us: scenario.operator.resets_s.as_ref().map(times),
-            lines_us: stops
-                .iter()
-                .map(|p| p.map(|t| microseconds(t.get())))
-                .collect(),
-            wait_us: microseconds(0.2 + robot.values.timing.rest_s),
-        }
-    }
-
-    fn line(&self, t_us: u64) -> bool {
-        self.lines_us
-            .iter()
-            .any(|[from, until]| t_us >= *from && t_us < *until)
-    }
-
-    /// Whether a reset is given at this tick; each is given once.
-    fn reset(&mut self, t_us: u64, rested: bool) -> bool {
-        match &mut self.resets_us {
-            Some(times) => {
-                let before = times.len();
-                times.retain(|time| *time > t_us);
-                times.len() < before
-            }
-            None if t_us >= self.wait_us && rested => {
-                self.resets_us = Some(Vec::new());
-                true
-            }
-            None => false,
-        }
-    }
 }
 
 impl<'a> Host<'a> {
@@ -97,7 +55,10 @@ impl<'a> Host<'a> {
                 curvature: if v.abs() > 1e-6 { omega / v } else { 0.0 },
             },
         };
+        let via_points = controller.as_ref().and_then(|c| c.via_points());
         Self {
+            route: via_points.map(|_| Route::default()),
+            navigation: via_points.map(NavigationRecord::new),
             controller,
             monitors: Monitors::new(robot, &engine.world),
             driver,
@@ -148,9 +109,18 @@ impl<'a> Host<'a> {
     fn collect(&mut self, t_us: u64, engine: &mut Engine<'_>) -> TickInputs {
         let host_us = t_us + self.base_us;
         let since_s = self.released_us.map_or(0.0, |from| seconds(t_us - from));
-        let command = RawCommand {
-            stamp_us: host_us,
-            motion: self.driver.propose(&engine.pose(), since_s),
+        let order_us = self
+            .route
+            .as_mut()
+            .and_then(|route| route.order(self.decision.map(|d| d.status), host_us));
+        let command = match &self.route {
+            // The kernel drives itself: nobody sends commands.
+            Some(_) => None,
+            None => {
+                let motion = self.driver.propose(&engine.pose(), since_s);
+                let stamp_us = host_us;
+                self.faults.command(t_us, RawCommand { stamp_us, motion })
+            }
         };
         let (scans, odometry) = engine.receive(t_us, &mut self.faults);
         let rested = engine.rested(t_us, self.robot.values.timing.rest_s + 0.1);
@@ -158,7 +128,8 @@ impl<'a> Host<'a> {
         TickInputs {
             scans,
             odometry,
-            command: self.faults.command(t_us, command),
+            command,
+            order_us,
             emergency_stop: self.operator.line(t_us),
             reset_us: reset.then_some(host_us),
         }
@@ -171,7 +142,14 @@ impl<'a> Host<'a> {
             return self.sent;
         };
         let decision = tick(controller.as_mut(), self.robot, inputs, now_us);
-        let record = record(&decision);
+        let mut record = record(&decision);
+        let pose = engine.pose();
+        if let (Some(log), Some(said)) =
+            (&mut self.navigation, controller.said(&pose, self.base_us))
+        {
+            record.wants_rest = said.progress.kind == "arrived";
+            log.note(seconds(t_us), &pose, said);
+        }
         if decision.status == StopStatus::Running && self.released_us.is_none() {
             self.released_us = Some(t_us);
         }
@@ -182,7 +160,7 @@ impl<'a> Host<'a> {
             inputs,
             &record,
             &pose_at,
-            (engine.pose(), rested),
+            (pose, rested),
         ));
         let before = self.decision.map(|d| d.status);
         if before != Some(StopStatus::Running)
@@ -268,15 +246,16 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// Monitor reports, and what the controller remembers, in the world.
-    pub(super) fn finish(self, engine: &Engine<'_>) -> (Vec<MonitorReport>, Vec<[f64; 2]>) {
+    /// What the run leaves behind on this side: monitor reports, memory in the world, navigation.
+    pub(super) fn finish(self, engine: &Engine<'_>, result: &mut RunResult) {
         let Some(controller) = self.controller else {
-            return (Vec::new(), Vec::new());
+            return;
         };
         let start = engine.history.first().copied().unwrap_or_default();
         let points = controller.remembered();
-        let remembered = points.into_iter().map(|point| start.apply(point)).collect();
-        (self.monitors.finish(), remembered)
+        result.remembered_m = points.into_iter().map(|point| start.apply(point)).collect();
+        result.monitors = self.monitors.finish();
+        result.navigation = self.navigation;
     }
 }
 
@@ -288,6 +267,7 @@ fn record(decision: &Decision) -> DecisionRecord {
         status: decision.status,
         set_point: set_point(decision.setpoint),
         expires_us: decision.expires.as_us(),
+        wants_rest: false,
         point_m: point.map(|p| [f64::from(p.x_mm) * 1e-3, f64::from(p.y_mm) * 1e-3]),
     }
 }

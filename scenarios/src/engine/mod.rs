@@ -1,6 +1,7 @@
 //! The deterministic engine: 10 ms dynamics, control ticks at the robot's period.
 
 mod host;
+mod operator;
 mod recorder;
 
 #[cfg(test)]
@@ -55,6 +56,7 @@ struct Engine<'a> {
     odometer: Odometer,
     drive: Drive,
     goal: Option<GoalDisc>,
+    via_m: Vec<[f64; 2]>,
     transit: Transit,
     /// True pose at every dynamics step so far.
     history: Vec<Pose>,
@@ -87,7 +89,7 @@ pub fn run(scenario: &Scenario, robot: &Robot, controller: Option<Box<dyn Contro
         for touch in touches {
             host.touch(touch, &engine.broken);
         }
-        let reached = engine.reached();
+        let reached = engine.reached(t_us);
         if reached || t_us >= end_us {
             return finish(recorder, host, &engine, t_us, reached);
         }
@@ -103,10 +105,8 @@ fn finish(
     t_us: u64,
     reached: bool,
 ) -> Run {
-    let (monitors, remembered_m) = host.finish(engine);
     let (mut result, trace) = recorder.finish(engine, seconds(t_us), reached);
-    result.monitors = monitors;
-    result.remembered_m = remembered_m;
+    host.finish(engine, &mut result);
     Run { result, trace }
 }
 
@@ -125,6 +125,7 @@ impl<'a> Engine<'a> {
                 [start.linear_mps.get(), start.angular_radps.get()],
             ),
             goal: GoalDisc::of(scenario),
+            via_m: scenario.via_m(),
             transit: Transit::default(),
             history: vec![Pose::new(
                 start.x_m.get(),
@@ -168,8 +169,10 @@ impl<'a> Engine<'a> {
             .is_some_and(|since| t_us - since >= microseconds(span_s))
     }
 
-    fn reached(&self) -> bool {
-        self.goal.is_some_and(|goal| goal.holds(&self.pose()))
+    fn reached(&self, t_us: u64) -> bool {
+        let rested = || self.rested(t_us, self.robot.values.timing.rest_s);
+        self.goal
+            .is_some_and(|goal| goal.holds(&self.pose()) && (!goal.at_rest || rested()))
     }
 
     fn distances(&self, t_us: u64) -> Vec<f64> {

@@ -182,6 +182,7 @@ impl Recorder {
             bodies: engine.world.record(time_s, BODY_STEP_S),
             goal_m: engine.goal.map(|goal| goal.centre),
             goal_radius_m: engine.goal.map(|goal| goal.radius),
+            via_m: engine.via_m.clone(),
         };
         (self.result, self.trace)
     }
@@ -204,6 +205,7 @@ fn empty(guarded: bool) -> RunResult {
         world: WorldRecord::default(),
         remembered_m: Vec::new(),
         monitors: Vec::new(),
+        navigation: None,
         assumptions_broken: Vec::new(),
     }
 }

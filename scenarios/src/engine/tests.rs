@@ -163,18 +163,6 @@ fn pose_between_steps_is_interpolated() {
 }
 
 #[test]
-fn robot_that_stands_on_a_body_is_refused() {
-    let on_top = |x: f64| {
-        let disc = format!("[[circle]]\nname = \"post\"\ncenter_m = [{x}, 0.0]\nradius_m = 0.1\n");
-        crate::batch::equip(scenario(&format!("{ROOM}\n{disc}")), &robot())
-    };
-    let error = on_top(0.0).expect_err("it stands in the robot");
-    assert!(error.to_string().contains("post"), "{error}");
-    // The front edge is 0.6 m ahead.
-    assert!(on_top(0.69).is_err() && on_top(0.72).is_ok());
-}
-
-#[test]
 fn only_what_reaches_into_the_vouched_disc_breaks_the_start() {
     let named = |disc: &str| {
         let text = format!("{ROOM}\n[[circle]]\nradius_m = 0.1\n{disc}\n")

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::fault::{FaultEntry, FaultKind};
-use super::{Motion, ProposerKind, Scenario, Step, SweepAxis};
+use super::{Motion, Proposer, ProposerKind, Scenario, Step, SweepAxis};
 
 /// Where and what: the caller adds the file.
 pub(super) type Complaint = (Option<Range<usize>>, String);
@@ -58,10 +58,16 @@ fn check_expect(scenario: &Scenario) -> Result<(), Complaint> {
         || expect.stop_within_s.is_some()
         || expect.travelled_min_m.is_some()
         || expect.turned_min_rad.is_some()
+        || expect.turned_max_deg.is_some()
+        || expect.travelled_max_m.is_some()
+        || expect.arrived.is_some()
+        || expect.blocked_reason.is_some()
+        || expect.refused_max.is_some()
         || !expect.assumptions_broken.is_empty();
     if !says_something {
         let message = "[expect] asks for nothing; write reached, stopped_before, blocked, reasons, \
-                       stop_within_s, travelled_min_m, turned_min_rad or assumptions_broken";
+                       stop_within_s, travelled_min_m, travelled_max_m, turned_min_rad, turned_max_deg, \
+                       arrived, blocked_reason, refused_max or assumptions_broken";
         return Err((None, message.to_owned()));
     }
     if expect.reached == Some(true) && scenario.goal.is_none() {
@@ -82,18 +88,66 @@ fn check_proposer(scenario: &Scenario) -> Result<(), Complaint> {
         ProposerKind::Reckless if proposer.speed_mps.is_none() => {
             "the reckless proposer needs speed_mps"
         }
-        ProposerKind::Reckless if !proposer.step.is_empty() => {
-            "steps belong to a script; write kind = \"script\""
-        }
         ProposerKind::Script if proposer.step.is_empty() => {
             "a script needs at least one [[proposer.step]]"
         }
         ProposerKind::Script if proposer.speed_mps.is_some() => {
             "speed_mps belongs to the reckless proposer; write linear_mps into the steps"
         }
-        _ => return check_steps(&proposer.step),
+        ProposerKind::Navigate if scenario.goal.is_none() => {
+            "navigate needs somewhere to go; write a [goal] table"
+        }
+        ProposerKind::Navigate
+            if proposer.speed_mps.is_some() || proposer.heading_gain_per_s.is_some() =>
+        {
+            "navigate chooses its speed itself; lower limits.speed_forward_mps in [robot_values], or \
+             write speed_mps into [naked] for the reckless twin"
+        }
+        kind if kind != ProposerKind::Script && !proposer.step.is_empty() => {
+            "steps belong to a script; write kind = \"script\""
+        }
+        kind if kind != ProposerKind::Navigate && has_way(proposer) => {
+            "via_m and [proposer.navigate] belong to navigate; write kind = \"navigate\""
+        }
+        _ => {
+            check_navigate(scenario)?;
+            return check_steps(&proposer.step);
+        }
     };
     Err((Some(scenario.proposer.span()), complaint.to_owned()))
+}
+
+const fn has_way(proposer: &Proposer) -> bool {
+    proposer.via_m.is_some() || proposer.navigate.is_some()
+}
+
+/// What only makes sense if the kernel drives itself, and what does not then.
+fn check_navigate(scenario: &Scenario) -> Result<(), Complaint> {
+    if scenario.proposer.get_ref().kind == ProposerKind::Navigate {
+        let of_commands = scenario
+            .fault
+            .iter()
+            .find(|f| f.get_ref().kind.hits_commands());
+        return of_commands.map_or(Ok(()), |fault| {
+            let message = "nobody sends commands where the kernel drives itself, so nothing goes wrong \
+                           with them; remove the fault";
+            Err((Some(fault.span()), message.to_owned()))
+        });
+    }
+    let expect = &scenario.expect;
+    if expect.arrived.is_some() || expect.blocked_reason.is_some() || expect.refused_max.is_some() {
+        let message = "arrived, blocked_reason and refused_max are answers of the kernel's planner; \
+                       write kind = \"navigate\" or remove them";
+        return Err((None, message.to_owned()));
+    }
+    match &scenario.naked {
+        Some(naked) if naked.get_ref().path.is_some() || naked.get_ref().speed_mps.is_some() => {
+            let message = "path and speed_mps in [naked] are for the twin of a navigate scenario; \
+                           elsewhere the twin follows the proposer";
+            Err((Some(naked.span()), message.to_owned()))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn check_steps(steps: &[toml::Spanned<Step>]) -> Result<(), Complaint> {
@@ -156,8 +210,8 @@ fn check_fault(fault: &FaultEntry) -> Result<(), String> {
 
 fn motions(scenario: &Scenario) -> impl Iterator<Item = &toml::Spanned<Motion>> {
     let walls = scenario.wall.iter().map(|body| &body.get_ref().motion);
-    let boxes = scenario.boxes.iter().map(|body| &body.motion);
-    let circles = scenario.circle.iter().map(|body| &body.motion);
+    let boxes = scenario.boxes.iter().map(|body| &body.get_ref().motion);
+    let circles = scenario.circle.iter().map(|body| &body.get_ref().motion);
     walls.chain(boxes).chain(circles).flatten()
 }
 

@@ -40,6 +40,17 @@ pub struct Expect {
     pub travelled_min_m: Option<NonNegative>,
     /// Least angle turned in all.
     pub turned_min_rad: Option<NonNegative>,
+    /// Most angle turned in all: it did not circle.
+    pub turned_max_deg: Option<NonNegative>,
+    /// Longest path: it did not wander.
+    pub travelled_max_m: Option<Positive>,
+    /// `navigate`: whether the kernel itself says at the end that it has arrived.
+    pub arrived: Option<bool>,
+    /// `navigate`: why the kernel says at the end that it cannot go on, in its own words.
+    #[serde(default, deserialize_with = "names::blocked_reason")]
+    pub blocked_reason: Option<String>,
+    /// `navigate`: most candidates of the planner that the guard may refuse over the run.
+    pub refused_max: Option<u64>,
     /// Assumptions that the result must name as broken; any other broken one fails the scenario.
     #[serde(default, deserialize_with = "names::assumptions")]
     pub assumptions_broken: Vec<String>,
@@ -62,9 +73,29 @@ pub struct StoppedBefore {
 #[serde(deny_unknown_fields)]
 pub struct Naked {
     /// Whether it must touch.
+    #[serde(default = "yes")]
     pub must_touch: bool,
     /// Why not, if not.
     pub reason: Option<String>,
+    /// `navigate`: where the reckless driver that takes the kernel's place heads for.
+    pub path: Option<NakedPath>,
+    /// `navigate`: its speed; default the robot's highest.
+    pub speed_mps: Option<Positive>,
+}
+
+const fn yes() -> bool {
+    true
+}
+
+/// Where the naked twin of a `navigate` scenario heads for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NakedPath {
+    /// Straight from one via point to the next.
+    #[default]
+    Via,
+    /// Straight for the goal.
+    Goal,
 }
 
 /// One axis of a sweep: either `values`, or `path` with `from`, `to` and `count`.

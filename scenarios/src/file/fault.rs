@@ -99,6 +99,19 @@ impl FaultKind {
         )
     }
 
+    /// Whether it befalls the commands of a planner.
+    #[must_use]
+    pub const fn hits_commands(self) -> bool {
+        matches!(
+            self,
+            Self::CommandNan
+                | Self::CommandMissing
+                | Self::CommandLate
+                | Self::CommandFuture
+                | Self::CommandReordered
+        )
+    }
+
     /// Whether it may have `fraction`.
     #[must_use]
     pub const fn takes_fraction(self) -> bool {

@@ -6,6 +6,7 @@ use std::path::Path;
 use toml::{Table, Value};
 
 use super::check::check;
+use super::places::Places;
 use super::{Scenario, ScenarioError};
 use crate::sweep::combinations;
 
@@ -66,6 +67,7 @@ pub fn parse(text: &str, file: &str, stem: &str) -> Result<Vec<Scenario>, Scenar
     check(&base).map_err(|(span, message)| ScenarioError::at(file, text, span, message))?;
     base.group = stem.to_owned();
     base.name = stem.to_owned();
+    base.places = Places::new(&base, file, text);
     if base.sweep.is_empty() {
         return Ok(vec![base]);
     }
@@ -86,6 +88,7 @@ pub fn parse(text: &str, file: &str, stem: &str) -> Result<Vec<Scenario>, Scenar
             check(&scenario).map_err(|(_, what)| wrong(format!("{label}: {what}")))?;
             scenario.group = stem.to_owned();
             scenario.name = format!("{stem}/{label}");
+            scenario.places = base.places.clone();
             Ok(scenario)
         })
         .collect()

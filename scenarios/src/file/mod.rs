@@ -10,6 +10,8 @@ mod expect;
 pub mod fault;
 mod load;
 mod names;
+mod navigate;
+mod places;
 pub mod value;
 
 #[cfg(test)]
@@ -17,8 +19,14 @@ mod tests;
 
 pub use bodies::{BoxBody, Circle, Material, Motion, Wall};
 pub use error::ScenarioError;
-pub use expect::{ContactExpectation, Expect, Naked, StoppedBefore, SweepAxis, SweepValue};
+pub use expect::{
+    ContactExpectation, Expect, Naked, NakedPath, StoppedBefore, SweepAxis, SweepValue,
+};
 pub use load::{load_dir, load_file, parse};
+pub use navigate::Navigate;
+pub use places::Places;
+
+use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -34,6 +42,9 @@ pub struct Scenario {
     /// File stem; not in the file.
     #[serde(skip)]
     pub group: String,
+    /// Where its parts stand in the file; not in the file.
+    #[serde(skip)]
+    pub places: Places,
     /// One sentence for people.
     pub title: String,
     /// Ids of the requirements it covers.
@@ -49,6 +60,9 @@ pub struct Scenario {
     pub timeout_s: Timeout,
     /// Overrides the robot file: whether the guard's tube covers a dying host.
     pub cover_host_death: Option<bool>,
+    /// Other values for keys of the robot file, by their dotted paths.
+    #[serde(default)]
+    pub robot_values: BTreeMap<Spanned<String>, toml::Value>,
     /// Where the robot stands at time zero.
     #[serde(default)]
     pub start: Start,
@@ -57,10 +71,10 @@ pub struct Scenario {
     pub wall: Vec<Spanned<Wall>>,
     /// Rectangles.
     #[serde(default, rename = "box")]
-    pub boxes: Vec<BoxBody>,
+    pub boxes: Vec<Spanned<BoxBody>>,
     /// Discs.
     #[serde(default)]
-    pub circle: Vec<Circle>,
+    pub circle: Vec<Spanned<Circle>>,
     /// Where the robot wants to go.
     pub goal: Option<Goal>,
     /// Who proposes the motion.
@@ -112,6 +126,9 @@ pub struct Goal {
     pub position_m: Pair,
     /// Radius.
     pub radius_m: Positive,
+    /// Whether the run only ends once the robot rests inside; default it ends as soon as it is inside.
+    #[serde(default)]
+    pub at_rest: bool,
 }
 
 /// Who proposes the motion.
@@ -127,6 +144,11 @@ pub struct Proposer {
     /// `script`: what to do, in order.
     #[serde(default)]
     pub step: Vec<Spanned<Step>>,
+    /// `navigate`: points to pass on the way to the goal, in order.
+    #[serde(default, deserialize_with = "value::points")]
+    pub via_m: Option<Vec<Pair>>,
+    /// `navigate`: the kernel's planner, where it differs from its default.
+    pub navigate: Option<Navigate>,
 }
 
 /// Sort of proposer.
@@ -137,6 +159,8 @@ pub enum ProposerKind {
     Reckless,
     /// Plays back fixed motions.
     Script,
+    /// The kernel itself drives: it plans the way along the via points to the goal.
+    Navigate,
 }
 
 /// One scripted motion.
@@ -238,6 +262,19 @@ pub struct Operator {
 }
 
 impl Scenario {
+    /// Points that the kernel's navigator is asked to pass, in the world.
+    #[must_use]
+    pub fn via_m(&self) -> Vec<[f64; 2]> {
+        let points = self.proposer.get_ref().via_m.iter().flatten();
+        points.map(|point| value::floats(*point)).collect()
+    }
+
+    /// Whether the kernel itself drives.
+    #[must_use]
+    pub fn navigates(&self) -> bool {
+        self.proposer.get_ref().kind == ProposerKind::Navigate
+    }
+
     /// Why there is no naked twin; `None` if there is one and it must touch.
     #[must_use]
     pub fn naked_excuse(&self) -> Option<&str> {

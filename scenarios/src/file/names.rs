@@ -1,6 +1,8 @@
 //! Names that must be those of the specification or of the kernel: a typo is no failed run.
 
 use haltline::decision::Reason;
+use haltline::guard::Refusal;
+use haltline::kernel::navigate::Obstruction;
 use serde::{Deserialize, Deserializer, de::Error};
 
 /// All reasons of the kernel, in its order.
@@ -68,6 +70,33 @@ where
     checked(deserializer, "reason", &known)
 }
 
+/// Why the kernel's navigator cannot go on; a reason of the guard has `Guard` before its name.
+const OBSTRUCTIONS: [Obstruction; 7] = [
+    Obstruction::NoWay,
+    Obstruction::GoalOccupied,
+    Obstruction::NoProgress,
+    Obstruction::Guard(Refusal::KnownPoint),
+    Obstruction::Guard(Refusal::UnknownSpace),
+    Obstruction::Guard(Refusal::MixedMotion),
+    Obstruction::Guard(Refusal::TooLong),
+];
+
+/// One of the reasons for being blocked.
+pub(super) fn blocked_reason<'de, D>(deserializer: D) -> Result<Option<String>, D::Error>
+where
+    D: Deserializer<'de>,
+{
+    let name = String::deserialize(deserializer)?;
+    let known = OBSTRUCTIONS.map(crate::pilot::reason);
+    if known.contains(&name) {
+        return Ok(Some(name));
+    }
+    Err(D::Error::custom(format!(
+        "the kernel is never blocked by `{name}`; write one of {}",
+        known.join(", ")
+    )))
+}
+
 fn checked<'de, D>(deserializer: D, what: &str, known: &[String]) -> Result<Vec<String>, D::Error>
 where
     D: Deserializer<'de>,
@@ -94,6 +123,25 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn obstructions_are_complete() {
+        for obstruction in OBSTRUCTIONS {
+            // A new one does not compile until it is listed above.
+            match obstruction {
+                Obstruction::NoWay | Obstruction::GoalOccupied | Obstruction::NoProgress => {}
+                Obstruction::Guard(
+                    Refusal::KnownPoint
+                    | Refusal::UnknownSpace
+                    | Refusal::MixedMotion
+                    | Refusal::TooLong,
+                ) => {}
+            }
+        }
+        let names: std::collections::BTreeSet<_> =
+            OBSTRUCTIONS.map(crate::pilot::reason).into_iter().collect();
+        assert_eq!(names.len(), OBSTRUCTIONS.len());
+    }
 
     #[test]
     fn reasons_are_complete_and_in_the_kernels_order() {

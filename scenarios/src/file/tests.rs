@@ -112,6 +112,7 @@ count = 20
     assert_eq!(scenarios[0].name, "a/side_left-timing_00");
     assert_eq!(scenarios[39].name, "a/side_right-timing_19");
     let motion = scenarios[39].circle[0]
+        .get_ref()
         .motion
         .clone()
         .expect("a motion")
@@ -195,4 +196,91 @@ fn names_that_nobody_knows_are_refused() {
     refused("blocked = true", typo, "25:11", "GuardBlocked");
     let typo = "assumptions_broken = [\"A-FOO\"]";
     refused("blocked = true", typo, "25:22", "A-BRAKE");
+}
+
+const NAVIGATE: &str = r#"title = "To the end of the corridor"
+requirements = ["GUARD-01"]
+robot = "seekur_jr"
+obstacle_speed_mps = 0
+seed = 1
+timeout_s = 10.0
+
+[goal]
+position_m = [5.0, 0.0]
+radius_m = 0.3
+at_rest = true
+
+[proposer]
+kind = "navigate"
+via_m = [[1.0, 0.1], [2.0, -0.1]]
+navigate = { goal_tolerance_m = 0.1, creep_mps = 0.02 }
+
+[naked]
+path = "goal"
+speed_mps = 0.8
+
+[expect]
+arrived = true
+refused_max = 0
+"#;
+
+#[test]
+fn kernel_that_drives_itself_takes_via_points_and_tuning() {
+    let scenario = parse(NAVIGATE, "a.toml", "a").expect("good").remove(0);
+    assert!(scenario.navigates());
+    assert_eq!(scenario.via_m(), [[1.0, 0.1], [2.0, -0.1]]);
+    let tuning = scenario.proposer.get_ref().navigate.expect("a table");
+    assert_eq!(tuning.creep_mps.map(NonNegative::get), Some(0.02));
+    assert!(scenario.goal.is_some_and(|goal| goal.at_rest));
+    assert_eq!(scenario.naked_excuse(), None);
+}
+
+#[test]
+fn navigate_and_the_other_proposers_do_not_mix() {
+    let refused = |from: &str, to: &str, place: &str, words: &str| {
+        assert_eq!(NAVIGATE.matches(from).count(), 1, "`{from}` must be unique");
+        let message = error(&NAVIGATE.replace(from, to));
+        assert!(message.starts_with(&format!("a.toml{place}")), "{message}");
+        assert!(message.contains(words), "{message}");
+    };
+    let kind = "kind = \"navigate\"";
+    refused(
+        kind,
+        "kind = \"reckless\"\nspeed_mps = 1.0",
+        ":13:1:",
+        "write kind = \"navigate\"",
+    );
+    refused(
+        kind,
+        "kind = \"navigate\"\nspeed_mps = 1.0",
+        ":13:1:",
+        "chooses its speed itself",
+    );
+    refused(
+        kind,
+        "kind = \"navigate\"\nstep = [{ until_s = 1.0 }]",
+        ":13:1:",
+        "script",
+    );
+    refused(
+        "[1.0, 0.1], ",
+        "[1.0, 0.1, 0.2], ",
+        ":15:",
+        "write exactly 2",
+    );
+    refused("creep_mps = 0.02", "creep_mph = 0.02", ":16:", "creep_mph");
+    let late = "\n[[fault]]\nkind = \"command_missing\"\nfrom_s = 1.0\n";
+    let message = error(&format!("{NAVIGATE}{late}"));
+    assert!(message.contains("nobody sends commands"), "{message}");
+    let goal = NAVIGATE.find("[goal]").zip(NAVIGATE.find("[proposer]"));
+    let (from, to) = goal.expect("both are there");
+    let nowhere = format!("{}{}", &NAVIGATE[..from], &NAVIGATE[to..]);
+    assert!(error(&nowhere).contains("write a [goal] table"));
+    let message = error(&format!("{GOOD}arrived = true\n"));
+    assert!(
+        message.contains("answers of the kernel's planner"),
+        "{message}"
+    );
+    let message = error(&format!("{GOOD}\n[naked]\npath = \"goal\"\n"));
+    assert!(message.contains("twin of a navigate scenario"), "{message}");
 }

@@ -13,6 +13,8 @@ pub(super) struct Latch {
     latched: bool,
     status: StopStatus,
     released_us: Option<u64>,
+    /// The last release of a latched stop: an older order is void.
+    unlatched_us: Option<u64>,
     before: Option<SetPoint>,
 }
 
@@ -23,6 +25,7 @@ impl Latch {
             latched: true,
             status: StopStatus::Latched,
             released_us: None,
+            unlatched_us: None,
             before: None,
         }
     }
@@ -51,6 +54,9 @@ impl Latch {
         }
         if self.status != StopStatus::Running && decision.status == StopStatus::Running {
             self.released_us = Some(tick.now_us);
+            if self.status == StopStatus::Latched {
+                self.unlatched_us = Some(tick.now_us);
+            }
         }
         self.status = decision.status;
         self.check_replay(tick);
@@ -63,8 +69,13 @@ impl Latch {
         if !tick.decision.moves() {
             return;
         }
-        let replayed = match (self.released_us, tick.newest.command) {
-            (Some(released), Some(command)) => command <= released,
+        let (released, wanted) = match tick.inputs.order_us {
+            // A protective stop leaves the operator's order standing.
+            Some(order) => (self.unlatched_us, Some(order)),
+            None => (self.released_us, tick.newest.command),
+        };
+        let replayed = match (released, wanted) {
+            (Some(released), Some(wanted)) => wanted <= released,
             _ => true,
         };
         if replayed {

@@ -12,7 +12,8 @@ const ROUNDING: f64 = 5e-6;
 pub(super) struct Limit {
     pub(super) ledger: Ledger,
     before: Option<(u64, SetPoint)>,
-    /// Whether the newest command asks for standstill: braking, which no window limits.
+    /// Whether the newest command, or the kernel at its destination, asks for standstill: braking, which
+    /// no window limits.
     rest_wanted: bool,
 }
 
@@ -30,6 +31,9 @@ impl Limit {
         if let Some(command) = tick.inputs.command {
             let motion = command.motion;
             self.rest_wanted = motion.speed() == 0.0 && motion.turn_rate() == 0.0;
+        }
+        if tick.inputs.order_us.is_some() {
+            self.rest_wanted = tick.decision.wants_rest;
         }
         self.ledger.judged(tick.decision.moves());
         for what in outside(robot, set_point) {

@@ -41,6 +41,8 @@ pub struct DecisionRecord {
     pub expires_us: u64,
     /// The point that decided, body frame, metres.
     pub point_m: Option<[f64; 2]>,
+    /// The kernel drives itself and wants to stand, because it has arrived.
+    pub wants_rest: bool,
 }
 
 impl DecisionRecord {

@@ -1,5 +1,7 @@
 //! Every monitor fires when it should, and only then.
 
+mod navigate;
+
 use super::*;
 use crate::math::Pose;
 use crate::odometry::RawOdometry;
@@ -39,6 +41,7 @@ fn decision(action: Action, v: f64) -> DecisionRecord {
         set_point: SetPoint::Twist { v, omega: 0.0 },
         expires_us: 0,
         point_m: None,
+        wants_rest: false,
     }
 }
 
@@ -61,6 +64,7 @@ fn inputs(now_us: u64) -> TickInputs {
             stamp_us: now_us,
             motion: SetPoint::Twist { v: 0.5, omega: 0.0 },
         }),
+        order_us: None,
         emergency_stop: false,
         reset_us: None,
     }

@@ -48,6 +48,10 @@ impl Newest {
         if let Some(command) = inputs.command.filter(command_finite) {
             raise(&mut self.command, command.stamp_us, now_us);
         }
+        if inputs.order_us.is_some_and(|stamp| stamp <= now_us) {
+            // A route is wanted anew in every tick that hands it in.
+            self.command = Some(now_us);
+        }
         fresh
     }
 }

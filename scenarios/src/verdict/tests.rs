@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::engine::run;
+use crate::navigation::{NavigationRecord, ProgressRecord};
 use crate::result::{BrokenAssumption, MonitorReport, Violation};
 use crate::testing::{ROOM, robot, scenario};
 
@@ -151,4 +152,75 @@ fn naked_twin_that_touches_nothing_shows_nothing() {
     let harmless = judged(&parked());
     assert_eq!(harmless.outcome, Outcome::Fail);
     assert!(harmless.sentences[0].contains("shows nothing"));
+}
+
+#[test]
+fn turning_and_wandering_can_be_too_much() {
+    let mut run = parked();
+    run.turned_rad = 1.0;
+    run.travelled_m = 4.0;
+    assert!(passes("turned_max_deg = 58.0", &run));
+    assert!(!passes("turned_max_deg = 57.0", &run));
+    assert!(passes("travelled_max_m = 4.1", &run));
+    assert!(!passes("travelled_max_m = 3.9", &run));
+}
+
+/// A room in which the kernel drives itself, with this `[expect]` table.
+fn navigating(expect: &str) -> Scenario {
+    let (before, _) = ROOM.split_once("[proposer]").expect("there is one");
+    scenario(&format!(
+        "{before}[goal]\nposition_m = [2.0, 0.0]\nradius_m = 0.3\n[proposer]\nkind = \"navigate\"\n\
+         [expect]\n{expect}\n"
+    ))
+}
+
+/// Sentences of a parked run whose navigator ended like this.
+fn complaint(expect: &str, end: ProgressRecord, refused: u64) -> Option<String> {
+    let mut run = parked();
+    run.navigation = Some(NavigationRecord {
+        end,
+        refused,
+        refused_ticks: refused.min(2),
+        ..NavigationRecord::new(0)
+    });
+    let judgement = judge(&navigating(expect), &run, None);
+    (judgement.outcome == Outcome::Fail).then(|| judgement.sentences.join(" "))
+}
+
+fn ended(kind: &str, reason: Option<&str>) -> ProgressRecord {
+    ProgressRecord {
+        kind: kind.to_owned(),
+        reason: reason.map(str::to_owned),
+        since_s: Some(3.5),
+        ..ProgressRecord::default()
+    }
+}
+
+#[test]
+fn what_the_navigator_says_is_judged() {
+    let arrived = || ended("arrived", None);
+    let blocked = || ended("blocked", Some("GoalOccupied"));
+    assert_eq!(complaint("arrived = true", arrived(), 0), None);
+    assert_eq!(complaint("arrived = false", blocked(), 0), None);
+    let text = complaint("arrived = true", blocked(), 0).expect("it has not arrived");
+    assert!(
+        text.contains("blocked by GoalOccupied since 3.50 s"),
+        "{text}"
+    );
+    assert!(complaint("arrived = false", arrived(), 0).is_some());
+    let expect = "blocked_reason = \"GoalOccupied\"";
+    assert_eq!(complaint(expect, blocked(), 0), None);
+    assert!(complaint(expect, arrived(), 0).is_some());
+    assert!(complaint(expect, ended("blocked", Some("NoWay")), 0).is_some());
+}
+
+#[test]
+fn refusals_are_judged() {
+    let arrived = || ended("arrived", None);
+    assert_eq!(complaint("refused_max = 3", arrived(), 3), None);
+    let text = complaint("refused_max = 3", arrived(), 4).expect("too many");
+    assert!(
+        text.contains("refused 4 candidates") && text.contains("at most 3"),
+        "{text}"
+    );
 }

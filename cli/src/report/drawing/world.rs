@@ -35,11 +35,17 @@ pub(super) fn draw_scale(picture: &mut Picture, view: &View) {
     picture.text([x + 4.0, y - 4.0], Anchor::Start, Style::Label, text);
 }
 
-/// Where the robot wanted to go.
+/// How large a via point is drawn, pixels.
+const VIA_RADIUS_PX: f64 = 3.0;
+
+/// Where the robot wanted to go, and what it should pass on the way.
 pub(super) fn draw_goal(picture: &mut Picture, run: &RunResult, view: &View) {
     let Some(goal) = run.world.goal_m else { return };
     let radius = run.world.goal_radius_m.unwrap_or(0.1).max(0.05);
     picture.circle(view.at(goal), radius * view.scale, Style::Goal);
+    for via in &run.world.via_m {
+        picture.circle(view.at(*via), VIA_RADIUS_PX, Style::Goal);
+    }
 }
 
 /// Corners of a body at a pose; none for a disc.

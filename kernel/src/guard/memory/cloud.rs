@@ -113,7 +113,7 @@ impl OwnTerms {
         };
         let distance =
             u64::from(x_mm.unsigned_abs()).saturating_add(u64::from(y_mm.unsigned_abs()));
-        let lever_mm = (distance.saturating_mul(self.lever_q20) >> 20).saturating_add(1);
+        let lever_mm = distance.saturating_mul(self.lever_q20).div_ceil(1 << 20);
         let extra = self
             .constant_mm
             .saturating_add(lever_mm)

@@ -31,8 +31,6 @@ const PLACE_ROUNDING_MM: u64 = 3;
 const MERGE_MM: u32 = 2;
 /// How many of the points stored last are candidates for merging; bounds the work of a scan.
 const MERGE_WINDOW: usize = 64;
-/// What merging adds to the older point's ball: at least `MERGE_MM` times the root of two, mm.
-const MERGE_GROWTH_MM: u16 = 3;
 
 /// A point that the newest scans do not show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -240,7 +238,8 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
             });
         // The older point's ball grows until it contains the newer one's.
         if let Some(known) = near {
-            let grown = point.gap_mm.saturating_add(MERGE_GROWTH_MM);
+            let apart = place_distance_up(known, place);
+            let grown = point.gap_mm.saturating_add(apart);
             known.gap_mm = known.gap_mm.max(grown);
             known.misses = known.misses.min(misses);
             return;
@@ -392,6 +391,14 @@ pub fn misses_after(sight: Sight, misses: u8, clear_after_scans: u8) -> Option<u
         Sight::OutOfView => Some(misses),
         Sight::Unclear => Some(0),
     }
+}
+
+/// Distance of a remembered point from `place`, mm, rounded up; both nearby.
+fn place_distance_up(known: &Remembered, place: PointMm) -> u16 {
+    let square = |d: u32| u64::from(d).saturating_mul(u64::from(d));
+    let squared = square(i32::from(known.x_mm).abs_diff(place.x))
+        .saturating_add(square(i32::from(known.y_mm).abs_diff(place.y)));
+    u16::try_from(crate::arith::sqrt_up(squared)).unwrap_or(u16::MAX)
 }
 
 /// How near a new return must be to take a stored point's place, mm: what one body may differ

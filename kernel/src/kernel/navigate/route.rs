@@ -108,11 +108,8 @@ impl Route<'_> {
             Some(via) => (via.x_um, via.y_um, via.tolerance),
             None => (self.goal.x_um, self.goal.y_um, self.goal.tolerance),
         };
-        let metres = |to: i64, from: i64| to.saturating_sub(from) as f64 / MICRO;
-        (
-            [metres(x_um, origin.x_um), metres(y_um, origin.y_um)],
-            f64::from(tolerance.as_um()) / MICRO,
-        )
+        let (x, y) = offset((x_um, y_um), origin);
+        ([x, y], f64::from(tolerance.as_um()) / MICRO)
     }
 }
 
@@ -158,14 +155,16 @@ impl Course {
     /// points, counted from the place on the present leg that is nearest to the robot. On the way
     /// to the first via point and to the destination there is no leg to keep to.
     ///
-    /// Never more than [`CUT`] tolerances beyond the next via point: the tolerance says how far
-    /// the corner there may be cut.
+    /// Where the route bends by a right angle or more, never more than [`CUT`] tolerances beyond
+    /// the next via point, and farther the less it bends: the tolerance says how far the corner
+    /// may be cut.
     /// # Bound
     /// O(via points within `ahead_m`).
     pub fn onward(&self, route: &Route<'_>, pose: &Pose, ahead_m: f64) -> Sight {
         let (mut to, tolerance_m) = route.target(self.next, pose);
         let (mut place, rest) = self.on_leg(to, pose);
-        let mut left = ahead_m.min(rest + CUT * tolerance_m);
+        let bend = self.bend(route, pose, to);
+        let mut left = ahead_m.min(rest + CUT * tolerance_m / bend);
         for next in self.next..route.via.len() {
             let ([x, y], [to_x, to_y]) = (place, to);
             let (along, across) = (to_x - x, to_y - y);
@@ -185,6 +184,25 @@ impl Course {
         .straight(route, pose)
     }
 
+    /// Sine of the angle between this leg and the next, 1 for more than a right angle; above zero.
+    fn bend(&self, route: &Route<'_>, pose: &Pose, [x, y]: [f64; 2]) -> f64 {
+        let ([on_x, on_y], _) = route.target(self.next.saturating_add(1), pose);
+        let (from_x, from_y) = if self.next == 0 {
+            (0.0, 0.0)
+        } else {
+            offset(self.from, pose)
+        };
+        let (leg_x, leg_y) = (x - from_x, y - from_y);
+        let (next_x, next_y) = (on_x - x, on_y - y);
+        let lengths = libm::hypot(leg_x, leg_y) * libm::hypot(next_x, next_y);
+        let sine = (leg_x * next_y - leg_y * next_x).abs() / lengths;
+        if leg_x * next_x + leg_y * next_y <= 0.0 {
+            return 1.0;
+        }
+        // Not above one, and off zero; NaN counts as one.
+        sine.max(1e-6).min(1.0)
+    }
+
     /// The next target itself.
     pub fn straight(&self, route: &Route<'_>, pose: &Pose) -> Sight {
         let (place, tolerance_m) = route.target(self.next, pose);
@@ -197,11 +215,7 @@ impl Course {
         if self.next == 0 {
             return ([0.0; 2], libm::hypot(to_x, to_y));
         }
-        let metres = |to: i64, from: i64| to.saturating_sub(from) as f64 / MICRO;
-        let (x, y) = (
-            metres(self.from.0, pose.x_um),
-            metres(self.from.1, pose.y_um),
-        );
+        let (x, y) = offset(self.from, pose);
         let (along, across) = (to_x - x, to_y - y);
         let squared = along * along + across * across;
         let part = if squared > 0.0 {
@@ -227,6 +241,12 @@ impl Sight {
             is_goal: goal_tolerance_m.is_some(),
         }
     }
+}
+
+/// A place in µm, from `origin` along the odometry axes, m.
+fn offset((x_um, y_um): (i64, i64), origin: &Pose) -> (f64, f64) {
+    let metres = |to: i64, from: i64| to.saturating_sub(from) as f64 / MICRO;
+    (metres(x_um, origin.x_um), metres(y_um, origin.y_um))
 }
 
 /// An angle in (-π, π].
