@@ -14,7 +14,6 @@ mod hull;
 mod memory;
 mod rect;
 mod robot;
-mod seen;
 mod stop;
 mod watch;
 mod window;

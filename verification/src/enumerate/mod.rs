@@ -12,10 +12,13 @@
 )]
 
 mod angles;
+mod arith;
 mod braking;
 mod intervals;
 mod kernel;
+mod seen;
 mod shapes;
+mod trig;
 mod tube;
 
 use std::ops::Range;
@@ -32,6 +35,9 @@ const FAIL_FAST: &str = "not run";
 pub fn all() -> Vec<Enumeration> {
     let mut all = Vec::new();
     all.extend(angles::all());
+    all.extend(trig::all());
+    all.extend(arith::all());
+    all.extend(seen::all());
     all.extend(braking::all());
     all.extend(shapes::all());
     all.extend(intervals::all());
