@@ -62,7 +62,9 @@ motion. The recorded robot does not obey it, so every verdict is about one momen
 different history.
 
 Example:
-  haltline replay --format sena ../shared/data/sena/sena.csv.gz --out out/sena")]
+  haltline replay --format sena ../shared/data/sena/sena.csv.gz --out out/sena
+  haltline replay --format carmen intel.log --robot my_robot.toml
+  haltline replay --format mrclam MRCLAM_Dataset1 --robot 3")]
     Replay(ReplayArgs),
     /// Turn somebody else's world into a scenario file.
     Import {
@@ -200,10 +202,11 @@ pub struct ReplayArgs {
     /// Format of the log.
     #[arg(long, value_enum)]
     pub format: LogFormat,
-    /// Log file, plain or gzip.
+    /// Log file, plain or gzip; for mrclam the data set's folder.
     pub file: PathBuf,
-    /// Robot file [default: the SENA robot that comes with the program].
-    #[arg(long, value_name = "FILE")]
+    /// Robot file [default: the SENA robot that comes with the program]; for mrclam the robot's
+    /// number [default: 1].
+    #[arg(long, value_name = "FILE|N")]
     pub robot: Option<PathBuf>,
     /// Folder to write the pictures to.
     #[arg(long, value_name = "DIR", default_value = "out/replay")]
@@ -215,6 +218,10 @@ pub struct ReplayArgs {
 pub enum LogFormat {
     /// CSV: time, odometry increment and ranges in each line.
     Sena,
+    /// A log of the CARMEN toolkit with FLASER lines; the map is drawn, too.
+    Carmen,
+    /// A folder of the UTIAS multi-robot data sets: the marker filter against known truth.
+    Mrclam,
 }
 
 /// Arguments of `explain`.

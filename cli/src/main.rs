@@ -13,6 +13,7 @@ macro_rules! say {
 
 mod args;
 mod barn;
+mod carmen;
 mod certificate;
 mod certify;
 mod claims;
@@ -21,6 +22,7 @@ mod failure;
 mod import;
 mod junit;
 mod library;
+mod mrclam;
 mod new;
 mod picture;
 mod provenance;

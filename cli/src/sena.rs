@@ -46,6 +46,14 @@ pub struct Log {
 /// # Errors
 /// Unusable input with file and line.
 pub fn read(path: &Path) -> Result<Log, Failure> {
+    parse(path, &text(path)?)
+}
+
+/// The text of a log file, plain or gzip.
+///
+/// # Errors
+/// No such file, broken gzip, or not a text.
+pub fn text(path: &Path) -> Result<String, Failure> {
     if !path.exists() {
         return Err(Failure::input(format!(
             "{}: no such file. The recorded drive is not part of the project; \
@@ -54,17 +62,16 @@ pub fn read(path: &Path) -> Result<Log, Failure> {
         )));
     }
     let bytes = std::fs::read(path).map_err(|error| Failure::read(path, &error))?;
-    let text = if bytes.starts_with(&[0x1f, 0x8b]) {
+    if bytes.starts_with(&[0x1f, 0x8b]) {
         let mut text = String::new();
         flate2::read::MultiGzDecoder::new(bytes.as_slice())
             .read_to_string(&mut text)
             .map_err(|error| Failure::input(format!("{}: broken gzip: {error}", path.display())))?;
-        text
+        Ok(text)
     } else {
         String::from_utf8(bytes)
-            .map_err(|_| Failure::input(format!("{}: not a text file", path.display())))?
-    };
-    parse(path, &text)
+            .map_err(|_| Failure::input(format!("{}: not a text file", path.display())))
+    }
 }
 
 fn parse(path: &Path, text: &str) -> Result<Log, Failure> {

@@ -26,6 +26,7 @@ pub mod grid;
 pub mod guard;
 pub mod input;
 pub mod kernel;
+pub mod marker;
 pub mod odometry;
 pub mod pipeline;
 pub mod stop;

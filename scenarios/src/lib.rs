@@ -15,6 +15,7 @@ pub mod engine;
 pub mod equip;
 pub mod faults;
 pub mod file;
+pub mod marker_world;
 pub mod math;
 pub mod monitor;
 pub mod navigation;

@@ -27,6 +27,8 @@ pub enum Family {
     Memory,
     /// Work per tick has a declared bound.
     Time,
+    /// The marker filter is finite, symmetric positive and gated.
+    Ekf,
 }
 
 impl Family {
@@ -44,6 +46,7 @@ impl Family {
             Self::Input => "INPUT",
             Self::Memory => "MEMORY",
             Self::Time => "TIME",
+            Self::Ekf => "EKF",
         }
     }
 }
@@ -87,7 +90,7 @@ pub struct Assumption {
 }
 
 /// Every file of requirements: family, path from the repository root, content.
-const FILES: [(Family, &str, &str); 10] = [
+const FILES: [(Family, &str, &str); 11] = [
     (Family::Guard, "spec/guard.md", include_str!("../guard.md")),
     (Family::Brake, "spec/brake.md", include_str!("../brake.md")),
     (Family::Limit, "spec/limit.md", include_str!("../limit.md")),
@@ -106,6 +109,7 @@ const FILES: [(Family, &str, &str); 10] = [
         include_str!("../memory.md"),
     ),
     (Family::Time, "spec/time.md", include_str!("../time.md")),
+    (Family::Ekf, "spec/ekf.md", include_str!("../ekf.md")),
 ];
 
 const ASSUMPTIONS_FILE: &str = "spec/assumptions.md";

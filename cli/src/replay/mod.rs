@@ -10,7 +10,7 @@ use crate::args::{LogFormat, ReplayArgs};
 use crate::failure::{Exit, Failure, prepare, write_file};
 use crate::picture::{Picture, png, svg};
 use crate::report::words;
-use crate::sena;
+use crate::{carmen, mrclam, sena};
 use console::style;
 use drawing::Scene;
 use drive::Moment;
@@ -28,15 +28,41 @@ const CLOSE_UPS: usize = 12;
 /// # Errors
 /// The log or the robot file is unusable, or the pictures cannot be written.
 pub fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
-    let log = match args.format {
-        LogFormat::Sena => sena::read(&args.file)?,
+    match args.format {
+        LogFormat::Sena => {
+            let log = sena::read(&args.file)?;
+            shadow_drive(args, &log, &load_robot(args.robot.as_deref())?)?;
+        }
+        LogFormat::Carmen => carmen_drive(args)?,
+        LogFormat::Mrclam => return mrclam::replay(args),
+    }
+    Ok(Exit::Holds)
+}
+
+/// The guard in shadow, and the map that the recording believed in.
+fn carmen_drive(args: &ReplayArgs) -> Result<(), Failure> {
+    let drive = carmen::read(&args.file)?;
+    let robot = match args.robot.as_deref() {
+        Some(path) => load_robot(Some(path))?,
+        None => carmen::assumed_robot(&drive.log.header)?,
     };
-    let robot = load_robot(args.robot.as_deref())?;
+    if drive.dropped > 0 {
+        let dropped = words::count(drive.dropped, "sweep");
+        say!("{dropped} not newer than the one before: dropped");
+    }
+    shadow_drive(args, &drive.log, &robot)?;
+    let path = carmen::write_map(&args.out, &drive, &robot)?;
+    say!("wrote {}", path.display());
+    Ok(())
+}
+
+/// Lets the kernel watch one drive.
+fn shadow_drive(args: &ReplayArgs, log: &sena::Log, robot: &Robot) -> Result<(), Failure> {
     prepare(&args.out)?;
-    let moments = drive::course(&log, robot.values.timing.period_s);
-    let judged = shadow::watch(&robot, &log, &moments)?;
+    let moments = drive::course(log, robot.values.timing.period_s);
+    let judged = shadow::watch(robot, log, &moments)?;
     let events = events::events(&moments, &judged);
-    print_summary(&args.file, &robot, &moments, &judged, &events);
+    print_summary(&args.file, robot, &moments, &judged, &events);
     let body = &robot.values.footprint;
     let scene = Scene {
         moments: &moments,
@@ -57,7 +83,7 @@ pub fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
     for path in written.iter().chain([&json_path]) {
         say!("wrote {}", path.display());
     }
-    Ok(Exit::Holds)
+    Ok(())
 }
 
 fn load_robot(file: Option<&Path>) -> Result<Robot, Failure> {

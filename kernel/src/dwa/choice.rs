@@ -13,6 +13,8 @@ use super::window::{DynamicWindow, Interval};
 const APART: f64 = 0.05;
 /// Turns smaller than this are not worth it even where nothing else is possible, rad.
 const ALIGNED_LEAST_RAD: f64 = 0.005;
+/// Turn rates nearer than this are the same, rad/s.
+const SAME_RADPS: f64 = 1e-6;
 /// Turn rates below this are not worth it, rad/s.
 const TURN_LEAST_RADPS: f64 = 0.01;
 
@@ -145,6 +147,17 @@ impl Choice<'_> {
         Some(eased).filter(Interval::is_some)
     }
 
+    /// How much of the look-ahead (or the way to the goal) `lane` leaves open at creeping speed, 0–1.
+    fn open(&self, lane: &Lane, ahead: Clearance) -> f64 {
+        match (ahead, lane.course) {
+            (Clearance::Contact(travel), Course::Arc { .. }) => {
+                let reach = self.situation.lookahead_m().min(self.sighting.distance_m);
+                if travel < reach { travel / reach } else { 1.0 }
+            }
+            _ => 1.0,
+        }
+    }
+
     fn best_of(&self, index: usize, lane: &Lane, aim: Aim, enough: f64) -> Option<Best> {
         if !lane.rates.is_some() {
             return None;
@@ -156,6 +169,7 @@ impl Choice<'_> {
             self.rates(lane, aim, enough)?,
             clearance.nearer(ahead),
         )?;
+        let open = self.open(lane, ahead);
         let mut found: Option<Best> = None;
         for step in 0..SPEEDS {
             let part = f64::from(u8::try_from(step).unwrap_or(0)) / 10.0;
@@ -174,6 +188,7 @@ impl Choice<'_> {
                     self.sighting,
                     (index, lane),
                     rate,
+                    open,
                 ),
                 clearance,
             };
@@ -195,9 +210,11 @@ impl Choice<'_> {
         let velocity = self.situation.velocity;
         let lane = self.lanes.get(PRESENT)?;
         let clearance = self.survey.firm.clearance(PRESENT, lane);
+        let bend = lane.curvature_per_m()?;
         let goes_on = aim == Aim::Position
             && velocity.linear_mps > 0.0
             && lane.rates.contains(velocity.linear_mps)
+            && (bend * velocity.linear_mps - velocity.angular_radps).abs() < SAME_RADPS
             && self.is_admissible(velocity, clearance);
         goes_on.then(|| Candidate {
             velocity,
@@ -207,6 +224,7 @@ impl Choice<'_> {
                 self.sighting,
                 (PRESENT, lane),
                 velocity.linear_mps,
+                1.0,
             ),
             clearance,
         })

@@ -221,7 +221,8 @@ fn driving(situation: &Situation<'_>, window: &DynamicWindow, curvature_per_m: f
         rect: situation.footprint.inflated(inflation.end_m),
         start_m: inflation.start_m,
         horizon,
-        horizon_ahead: stop * AHEAD_FACTOR / situation.tuning.comfort,
+        horizon_ahead: (stop * AHEAD_FACTOR / situation.tuning.comfort)
+            .max(situation.lookahead_m()),
     }
 }
 

@@ -16,6 +16,10 @@ use core::f64::consts::PI;
 const TOWARDS_GOAL: f64 = 0.5;
 /// Part of the largest turn rate that following the arc to the goal may take.
 const TURN_RESERVE: f64 = 0.8;
+/// Part of the heading's worth that small angles decide, and what is small, rad. In proportion
+/// to π alone, a hundredth of a radian weighs less than a millimetre per second.
+const FINE_PART: f64 = 0.05;
+const FINE_RAD: f64 = 0.05;
 /// Halvings in the search for the speed that the lateral room allows.
 const ROOM_STEPS: u8 = 12;
 
@@ -55,7 +59,8 @@ fn head(situation: &Situation<'_>, sighting: Sighting, lane: &Lane, travel: f64)
         // It can stop turning when it faces the goal.
         None => (sighting.bearing_rad.abs() - travel).max(0.0),
     };
-    1.0 - libm::sqrt(off / PI)
+    let fine = libm::sqrt((off / FINE_RAD).min(1.0));
+    1.0 - (1.0 - FINE_PART) * off / PI - FINE_PART * fine
 }
 
 /// `clear` (A.4, corrected): distance to the nearest point in [0, 1], without orientation.
@@ -87,6 +92,7 @@ pub(super) fn score(
     sighting: Sighting,
     (index, lane): (usize, &Lane),
     rate: f64,
+    open: f64,
 ) -> f64 {
     let tuning = &situation.tuning;
     // Not cut at the first contact: a path into a wall must not look good for ending early,
@@ -99,7 +105,7 @@ pub(super) fn score(
     };
     let stops = situation.goal.arrival == Arrival::Stop;
     let near_goal = stops && sighting.distance_m < tuning.goal_near_m;
-    tuning.heading_weight * head(situation, sighting, lane, travel)
+    tuning.heading_weight * open * head(situation, sighting, lane, travel)
         + tuning.clearance_weight * clear(situation, near_m)
         + tuning.speed_weight * vel(speed, situation.limits.speed_mps, near_goal)
 }

@@ -11,6 +11,11 @@ impl Situation<'_> {
         core::iter::once(self.velocity).chain(self.in_flight.iter().copied())
     }
 
+    /// How far ahead heading and clearance are judged at full speed, m.
+    pub(super) fn lookahead_m(&self) -> f64 {
+        2.0 * self.tuning.lookahead_s * self.limits.speed_mps
+    }
+
     /// The largest speed among them, m/s.
     pub(super) fn fastest_mps(&self) -> f64 {
         let speed = |velocity: Velocity| velocity.linear_mps.abs();

@@ -199,8 +199,7 @@ impl Course {
         if leg_x * next_x + leg_y * next_y <= 0.0 {
             return 1.0;
         }
-        // Not above one, and off zero; NaN counts as one.
-        sine.max(1e-6).min(1.0)
+        sine.clamp(1e-6, 1.0)
     }
 
     /// The next target itself.
@@ -219,7 +218,7 @@ impl Course {
         let (along, across) = (to_x - x, to_y - y);
         let squared = along * along + across * across;
         let part = if squared > 0.0 {
-            (-(x * along + y * across) / squared).max(0.0).min(1.0)
+            (-(x * along + y * across) / squared).clamp(0.0, 1.0)
         } else {
             1.0
         };
