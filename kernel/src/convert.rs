@@ -27,7 +27,9 @@ pub enum Round {
 }
 
 /// Rounds `value` as told without needing `std`; `None` unless |value| < 2⁵².
-fn round(value: f64, how: Round) -> Option<i64> {
+#[doc(hidden)]
+#[must_use]
+pub fn round(value: f64, how: Round) -> Option<i64> {
     const EXACT: f64 = 4_503_599_627_370_496.0;
     // A NaN fails both comparisons.
     if !(value > -EXACT && value < EXACT) {

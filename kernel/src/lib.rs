@@ -14,7 +14,8 @@
 #[cfg(test)]
 extern crate std;
 
-mod arith;
+#[doc(hidden)]
+pub mod arith;
 pub mod checked;
 pub mod config;
 pub mod convert;

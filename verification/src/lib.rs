@@ -5,5 +5,8 @@
 //! allocate. Proof harnesses, ledger and seeded faults come with the issue
 //! *Proofs*.
 
+pub mod enumerate;
+pub mod faults;
 pub mod image;
+pub mod prove;
 pub mod timing;

@@ -72,19 +72,21 @@ impl Rotation {
     }
 }
 
+/// A product with 30 fractional bits, rounded to nearest; saturates.
+#[must_use]
+#[inline]
+pub fn rounded_q30(product: i64) -> i32 {
+    crate::arith::narrow(product.saturating_add(1 << 29) >> 30)
+}
+
 /// Length `range_mm` along `direction`, rounded to nearest millimetre.
 ///
 /// Uses the full sine precision: 32 m away the error stays below 1 mm.
 #[must_use]
 pub fn polar(range_mm: i32, direction: BinaryAngle) -> PointMm {
     let (sin, cos) = sin_cos(direction);
-    let project = |component: i32| {
-        let product = i64::from(range_mm)
-            .saturating_mul(i64::from(component))
-            .saturating_add(1 << 29)
-            >> 30;
-        crate::arith::narrow(product)
-    };
+    let project =
+        |component: i32| rounded_q30(i64::from(range_mm).saturating_mul(i64::from(component)));
     PointMm {
         x: project(cos),
         y: project(sin),

@@ -190,14 +190,18 @@ fn span(low: i32, size: usize) -> core::ops::Range<i32> {
     low..low.saturating_add(i32::try_from(size).unwrap_or(i32::MAX))
 }
 
-fn ring(low: i32, size: usize) -> usize {
+/// Where the lowest index of an axis of `size` cells is stored. Public for proofs only.
+#[must_use]
+pub fn ring(low: i32, size: usize) -> usize {
     let size = i64::try_from(size).unwrap_or(i64::MAX);
     let rest = i64::from(low).checked_rem_euclid(size).unwrap_or(0);
     usize::try_from(rest).unwrap_or(0)
 }
 
+/// Where index `index` of an axis is stored; `None` off the map. Public for proofs only.
+#[must_use]
 #[inline]
-fn slot(index: i32, low: i32, ring: usize, size: usize) -> Option<usize> {
+pub fn slot(index: i32, low: i32, ring: usize, size: usize) -> Option<usize> {
     // A cell below `low` becomes huge and fails the test: `low` is at most POSE_MAX_UM away,
     // so nothing wraps all the way round into the window.
     let local = index.wrapping_sub(low).cast_unsigned() as usize;

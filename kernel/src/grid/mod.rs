@@ -26,6 +26,8 @@ mod rules;
 mod tests;
 
 pub use frame::POSE_MAX_UM;
+#[doc(hidden)]
+pub use frame::{ring, slot};
 pub use log_odds::LogOdds;
 pub use model::{Echo, SensorModel};
 pub use rolling::RollingGrid;

@@ -1,6 +1,6 @@
 //! Points against tubes: the inner loop of the guard.
 
-use super::tube::{Sample, Tube, eighths_up};
+use super::tube::{EIGHTH_BITS, Sample, Swept, Tube};
 use super::{BodyPoint, Budget};
 use crate::geometry::frame::PointMm;
 use crate::geometry::rect::Rect;
@@ -70,6 +70,26 @@ pub fn first_touch(
     cloud: &[CloudPoint],
     excuse: Option<&Excuse>,
 ) -> Option<Touch> {
+    let touched = first_blocked(&tube.swept(), footprint, cloud, excuse)?;
+    let (point, sample) = (cloud.get(touched.0)?, tube.samples().get(touched.1)?);
+    Some(Touch {
+        index: touched.0,
+        point: BodyPoint {
+            x_mm: point.x_mm,
+            y_mm: point.y_mm,
+        },
+        budget: tube.budget(sample),
+    })
+}
+
+/// Numbers of the first point of `cloud` that a sample touches, and of that sample.
+#[must_use]
+pub fn first_blocked(
+    tube: &Swept<'_>,
+    footprint: Rect,
+    cloud: &[CloudPoint],
+    excuse: Option<&Excuse>,
+) -> Option<(usize, usize)> {
     let mut previous: Option<&CloudPoint> = None;
     for (index, point) in cloud.iter().enumerate() {
         let start = match previous {
@@ -82,14 +102,7 @@ pub fn first_touch(
             continue;
         }
         if let Some(sample) = touched_sample(tube, footprint, start, point, extra, excuse) {
-            return Some(Touch {
-                index,
-                point: BodyPoint {
-                    x_mm: point.x_mm,
-                    y_mm: point.y_mm,
-                },
-                budget: tube.budget(sample),
-            });
+            return Some((index, sample));
         }
     }
     None
@@ -106,22 +119,21 @@ fn meets_bounds(bounds: &Rect, extra: i32, a: PointMm, b: PointMm) -> bool {
         && a.y.max(b.y).wrapping_add(extra) >= bounds.right.wrapping_neg()
 }
 
-fn touched_sample<'t>(
-    tube: &'t Tube,
+fn touched_sample(
+    tube: &Swept<'_>,
     footprint: Rect,
     start: &CloudPoint,
     end: &CloudPoint,
     extra_mm: u16,
     excuse: Option<&Excuse>,
-) -> Option<&'t Sample> {
-    let samples = tube.samples();
+) -> Option<usize> {
     if extra_mm > EXTRA_MAX_MM {
-        return samples.first();
+        return (!tube.samples.is_empty()).then_some(0);
     }
-    let extra = eighths_up(u64::from(extra_mm).saturating_mul(1000));
+    let extra = eighths(extra_mm);
     let excused_beyond =
-        excuse.and_then(|excuse| excuse.distance(tube, footprint, start, end, extra));
-    for (number, sample) in samples.iter().enumerate() {
+        excuse.and_then(|excuse| excuse.distance(&tube.start, footprint, start, end, extra));
+    for (number, sample) in tube.samples.iter().enumerate() {
         // A segment is at most as long as the join limit: if one end is out of
         // reach by the offset bound, the whole segment is.
         let (Some(a), Some(b)) = (sample.enter(start.point()), sample.enter(end.point())) else {
@@ -130,13 +142,21 @@ fn touched_sample<'t>(
         if !sample.rect.grown(extra).touches(a, b) {
             continue;
         }
-        let now = footprint.segment_distance_squared(a, b);
-        match excused_beyond {
-            Some(before) if number < tube.nominal_from || not_nearer(now, before) => {}
-            _ => return Some(sample),
+        let Some(before) = excused_beyond else {
+            return Some(number);
+        };
+        let excused = number < tube.nominal_from
+            || not_nearer(footprint.segment_distance_squared(a, b), before);
+        if !excused {
+            return Some(number);
         }
     }
     None
+}
+
+/// Whole millimetres in eighths.
+fn eighths(mm: u16) -> i32 {
+    i32::from(mm) << EIGHTH_BITS
 }
 
 /// What a robot that leaves rest is excused: points near the place where it rested.
@@ -152,13 +172,13 @@ impl Excuse {
     /// sample may undercut; `None` if the segment is not excused.
     fn distance(
         &self,
-        tube: &Tube,
+        at_start: &Sample,
         footprint: Rect,
         start: &CloudPoint,
         end: &CloudPoint,
         extra: i32,
     ) -> Option<u64> {
-        let rested = self.rested.as_ref().unwrap_or(&tube.start);
+        let rested = self.rested.as_ref().unwrap_or(at_start);
         let (a, b) = (rested.enter(start.point())?, rested.enter(end.point())?);
         if !rested.rect.grown(extra).touches(a, b) {
             return None;
@@ -174,11 +194,11 @@ impl Excuse {
         cloud
             .iter()
             .filter_map(|point| {
-                let extra = eighths_up(u64::from(point.extra_mm).saturating_mul(1000));
+                let extra = eighths(point.extra_mm);
                 let seen = tube.start.enter(point.point())?;
                 let inside = tube.start.rect.grown(extra).contains(seen);
                 let excused = self
-                    .distance(tube, footprint, point, point, extra)
+                    .distance(&tube.start, footprint, point, point, extra)
                     .is_some();
                 (inside && excused).then(|| footprint.distance_squared(seen))
             })

@@ -7,7 +7,7 @@ use super::hull::Hull;
 use super::plan::{Dynamics, Plan};
 use super::{Budget, Refusal};
 use crate::arith::{add, mul_div_up, mul_micro_up, narrow, to_i32};
-use crate::geometry::frame::{PointMm, ROTATION_BITS, Rotation};
+use crate::geometry::frame::{PointMm, ROTATION_BITS, Rotation, rounded_q30};
 use crate::geometry::rect::Rect;
 use crate::odometry::LocalPose;
 use crate::units::{BinaryAngle, Length};
@@ -75,6 +75,19 @@ pub struct Tube {
     pub(crate) plan: Plan,
 }
 
+/// The samples of a tube, as points are checked against them.
+#[derive(Clone, Copy, Debug)]
+pub struct Swept<'a> {
+    /// The inflated samples.
+    pub samples: &'a [Sample],
+    /// Bounding box of all samples, millimetres, outward.
+    pub bounds: Rect,
+    /// The pose at the start, inflated like the first sample.
+    pub start: Sample,
+    /// Samples before this one lie against the commanded sense of turning.
+    pub nominal_from: usize,
+}
+
 /// What the tube needs besides the hull.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TubeParameters {
@@ -88,22 +101,29 @@ pub struct TubeParameters {
     pub obstacle_speed: u64,
 }
 
-/// Walks the nominal arc: half a turn, a chord, half a turn.
-struct Walk {
-    x_q12: i32,
-    y_q12: i32,
-    heading: BinaryAngle,
-    half_turn: BinaryAngle,
-    chord_q12: i32,
+/// Walks the nominal arc: half a turn, a chord, half a turn. Public for proofs only.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Walk {
+    /// Along x, 2⁻¹² mm.
+    pub x_q12: i32,
+    /// Along y, 2⁻¹² mm.
+    pub y_q12: i32,
+    /// Heading at the sample.
+    pub heading: BinaryAngle,
+    /// Half the turn of a step.
+    pub half_turn: BinaryAngle,
+    /// Length of a step, 2⁻¹² mm; negative backwards.
+    pub chord_q12: i32,
 }
 
 impl Walk {
-    fn step(&mut self) {
+    /// The next sample.
+    pub fn step(&mut self) {
         self.heading = self.heading.plus(self.half_turn);
         let (sin, cos) = crate::geometry::trig::sin_cos(self.heading);
         let along = |component: i32| {
-            let product = i64::from(self.chord_q12).saturating_mul(i64::from(component));
-            narrow(product.saturating_add(1 << 29) >> 30)
+            rounded_q30(i64::from(self.chord_q12).saturating_mul(i64::from(component)))
         };
         self.x_q12 = self.x_q12.saturating_add(along(cos));
         self.y_q12 = self.y_q12.saturating_add(along(sin));
@@ -112,12 +132,16 @@ impl Walk {
 }
 
 /// Micrometres in eighths of a millimetre, rounded up.
-pub(crate) fn eighths_up(um: u64) -> i32 {
+#[doc(hidden)]
+#[must_use]
+pub fn eighths_up(um: u64) -> i32 {
     to_i32(mul_div_up(um, 1 << EIGHTH_BITS, 1000))
 }
 
 /// Half of `curvature · step` (µrad/m, µm) in counts of 2⁻³² turn.
-fn half_turn_counts(curvature: i32, step_um: u64) -> BinaryAngle {
+#[doc(hidden)]
+#[must_use]
+pub fn half_turn_counts(curvature: i32, step_um: u64) -> BinaryAngle {
     let turn = i64::from(curvature).saturating_mul(i64::try_from(step_um).unwrap_or(i64::MAX));
     // 10⁻¹² rad → counts: 2³²/(2π)/2 = 341 782 638 per rad.
     let counts = turn
@@ -295,6 +319,16 @@ impl Tube {
         Ok(())
     }
 
+    /// What points are checked against.
+    pub(crate) fn swept(&self) -> Swept<'_> {
+        Swept {
+            samples: self.samples(),
+            bounds: self.bounds,
+            start: self.start,
+            nominal_from: self.nominal_from,
+        }
+    }
+
     /// The samples, from the start to the pose at rest.
     #[must_use]
     pub fn samples(&self) -> &[Sample] {
@@ -330,6 +364,30 @@ fn joined(a: Rect, b: Rect) -> Rect {
 }
 
 impl Sample {
+    /// A sample by its parts, for proofs.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn from_parts(centre: PointMm, into: Rotation, rect: Rect) -> Self {
+        Self {
+            centre,
+            into,
+            rect,
+            ..Self::default()
+        }
+    }
+
+    /// Rotation centre, eighths of a millimetre.
+    #[must_use]
+    pub const fn centre(&self) -> PointMm {
+        self.centre
+    }
+
+    /// Inflated footprint without the points' own terms, eighths of a millimetre.
+    #[must_use]
+    pub const fn rect(&self) -> Rect {
+        self.rect
+    }
+
     /// `rect` around the body itself.
     #[must_use]
     pub fn at_rest(rect: Rect) -> Self {
@@ -359,8 +417,10 @@ impl Sample {
     /// `point` (body frame, millimetres) in the sample's frame, eighths of a millimetre.
     ///
     /// `None` where the point is too far away to touch the sample.
+    #[doc(hidden)]
+    #[must_use]
     #[inline]
-    pub(crate) fn enter(&self, point: PointMm) -> Option<PointMm> {
+    pub fn enter(&self, point: PointMm) -> Option<PointMm> {
         let offset = PointMm {
             x: (point.x << EIGHTH_BITS).saturating_sub(self.centre.x),
             y: (point.y << EIGHTH_BITS).saturating_sub(self.centre.y),

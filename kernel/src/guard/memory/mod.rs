@@ -140,13 +140,8 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
             };
             let stale = model.staleness(point.stamp, point.odometer, now, odometer);
             let error = place_error_mm(model, &stale, place, robot);
-            let misses = match self.scratch.look_at(place, error, same_mm(model, &stale)) {
-                Sight::Confirmed => None,
-                Sight::LookedPast => Some(point.misses.saturating_add(1))
-                    .filter(|&misses| misses < model.clear_after_scans),
-                Sight::OutOfView => Some(point.misses),
-                Sight::Unclear => Some(0),
-            };
+            let sight = self.scratch.look_at(place, error, same_mm(model, &stale));
+            let misses = misses_after(sight, point.misses, model.clear_after_scans);
             let gone = misses.is_none();
             let lost = !gone && self.is_out_of_reach(model, &point, now, place, robot);
             if lost {
@@ -379,6 +374,22 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
     #[must_use]
     pub const fn overflows(&self) -> u32 {
         self.overflows
+    }
+}
+
+/// How many consecutive scans have looked past a remembered point; `None` once it goes: shown
+/// again, or looked past often enough.
+/// # Source
+/// MEMORY-02, MEMORY-03.
+#[must_use]
+pub fn misses_after(sight: Sight, misses: u8, clear_after_scans: u8) -> Option<u8> {
+    match sight {
+        Sight::Confirmed => None,
+        Sight::LookedPast => {
+            Some(misses.saturating_add(1)).filter(|&misses| misses < clear_after_scans)
+        }
+        Sight::OutOfView => Some(misses),
+        Sight::Unclear => Some(0),
     }
 }
 

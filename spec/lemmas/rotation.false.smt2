@@ -1,0 +1,18 @@
+; False twin: 0.25 mm.
+; Requirements: GUARD-21
+;
+; Satisfiable, or the lemma shows nothing.
+(set-logic QF_NRA)
+(declare-const x Real)
+(declare-const y Real)
+(declare-const c Real)
+(declare-const s Real)
+(declare-const ec Real)
+(declare-const es Real)
+(declare-const r Real)
+(assert (and (<= (- 5793) x) (<= x 5793) (<= (- 5793) y) (<= y 5793)))
+(assert (and (<= (- 0.0000157) ec) (<= ec 0.0000157) (<= (- 0.0000157) es) (<= es 0.0000157)))
+(assert (and (<= 0 r) (<= r 0.125)))
+; The negation of what is claimed: unsatisfiable if it holds.
+(assert (not (let ((e (- (+ (* ec x) (* es y)) r))) (and (<= e 0.25) (<= (- e) 0.25)))))
+(check-sat)
