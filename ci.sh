@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Everything that must hold before a change lands, in one command; the hosted run calls this, too.
 # Usage: ./ci.sh            all steps, in order
-#        ./ci.sh STEP...    only these: setup fmt clippy doc test timing certify
+#        ./ci.sh STEP...    only these: setup fmt clippy doc test proofs timing certify
 set -euo pipefail
 cd "$(dirname "$0")"
 export CARGO_TERM_COLOR="${CARGO_TERM_COLOR:-auto}"
@@ -24,6 +24,7 @@ step_setup() { # Debian packages the later steps need
 step_fmt() {
     cargo fmt --all --check
     cargo fmt --manifest-path verification/image/Cargo.toml --check
+    cargo fmt --manifest-path verification/proofs/Cargo.toml --check
 }
 
 step_clippy() {
@@ -40,6 +41,10 @@ step_test() {
     cargo test --workspace --release
 }
 
+step_proofs() { # no proof is run again here; the ledger must match the sources
+    cargo run --release --quiet -p haltline-verification -- prove --check
+}
+
 step_timing() { # instruction counts; the machine's load does not matter
     cargo run --release --quiet -p haltline-verification -- timing
 }
@@ -54,10 +59,10 @@ step_certify() { # the main job, as a user runs it; twice, and the certificate m
 }
 
 steps=("$@")
-[ ${#steps[@]} -gt 0 ] || steps=(setup fmt clippy doc test timing certify)
+[ ${#steps[@]} -gt 0 ] || steps=(setup fmt clippy doc test proofs timing certify)
 for step in "${steps[@]}"; do
     if ! declare -F "step_$step" >/dev/null; then
-        echo "ci.sh: no step '$step'; the steps are: setup fmt clippy doc test timing certify" >&2
+        echo "ci.sh: no step '$step'; the steps are: setup fmt clippy doc test proofs timing certify" >&2
         exit 2
     fi
     started=$SECONDS

@@ -11,12 +11,18 @@ use haltline::decision::Decision;
 use haltline::guard::hull::Hull;
 use haltline::guard::tube::{Tube, TubeParameters};
 use haltline::input::{Beam, Command, Inputs, Odometry, Reading, Scan};
+use haltline::kernel::navigate::{Navigation, Planning, Route};
+use haltline::marker::{
+    FilterRules, Frame, FrameReport, Increment, MarkerEkf, MarkerFilter, Pose2, Prediction,
+};
 use haltline::stop::{StopEvents, StopState, StopTimes};
 use haltline::time::Instant;
 use haltline::units::Length;
 
 /// The capacities of the shipped command line tool.
 type Kernel = haltline::Kernel<4, 1100, 1024>;
+type Navigator = haltline::Navigator<4, 1100, 1024, 160, 160>;
+type Filter = MarkerEkf<20, 1024>;
 
 unsafe extern "C" {
     fn __panic_reached() -> !;
@@ -56,6 +62,71 @@ pub extern "C" fn image_step(
         reset: (flags & 2 != 0).then(|| Instant::from_us(now)),
     };
     *out = kernel.step(&inputs, Instant::from_us(now));
+}
+
+/// Navigator::new.
+#[unsafe(no_mangle)]
+pub extern "C" fn image_navigator(
+    config: &Config<4>,
+    planning: &Planning,
+    out: &mut Option<Navigator>,
+) -> bool {
+    *out = Navigator::new(*config, *planning).ok();
+    out.is_some()
+}
+
+/// Navigator::step with one scan and a route: grid, planner and guard.
+#[unsafe(no_mangle)]
+#[allow(improper_ctypes_definitions)]
+pub extern "C" fn image_navigate(
+    navigator: &mut Navigator,
+    scan: &Reading<Scan<'_>>,
+    odometry: &Reading<Odometry>,
+    route: &Route<'_>,
+    flags: u32,
+    now: u64,
+    out: &mut Navigation,
+) {
+    let scans = [*scan];
+    let inputs = Inputs {
+        scans: &scans,
+        odometry: *odometry,
+        emergency_stop: flags & 1 != 0,
+        reset: (flags & 2 != 0).then(|| Instant::from_us(now)),
+        ..Inputs::default()
+    };
+    let route = (flags & 4 != 0).then_some(route);
+    *out = navigator.step(&inputs, route, Instant::from_us(now));
+}
+
+/// MarkerEkf::new.
+#[unsafe(no_mangle)]
+pub extern "C" fn image_filter(
+    rules: &FilterRules,
+    start: &Pose2,
+    variances: &[f64; 3],
+    out: &mut Option<Filter>,
+) -> bool {
+    *out = Filter::new(*rules, *start, *variances).ok();
+    out.is_some()
+}
+
+/// MarkerEkf::predict.
+#[unsafe(no_mangle)]
+pub extern "C" fn image_predict(
+    filter: &mut Filter,
+    increment: &Increment,
+    now: u64,
+    out: &mut Prediction,
+) {
+    *out = filter.predict(Instant::from_us(now), increment);
+}
+
+/// MarkerEkf::correct.
+#[unsafe(no_mangle)]
+#[allow(improper_ctypes_definitions)]
+pub extern "C" fn image_correct(filter: &mut Filter, frame: &Frame<'_>, out: &mut FrameReport) {
+    *out = filter.correct(frame);
 }
 
 /// Tube::new.
