@@ -159,15 +159,18 @@ fn a_goal_behind_the_wall_is_blocked_with_point_and_time() {
     let mut drive = Drive::new();
     let began = drive.room.now();
     let answer = drive.follow(&order(began, &[], goal(20.0, 0.0)));
+    // The planner finds no way, or the guard refuses what it finds: before a wall both happen.
     let Progress::Blocked(Blocked {
-        reason: Obstruction::NoWay,
+        reason: Obstruction::NoWay | Obstruction::Guard(_),
         point: Some(point),
         since,
     }) = answer.progress
     else {
         panic!("{answer:?}")
     };
-    let ahead = drive.room.pose[0] + f64::from(point.x_mm) * 1e-3;
+    let [x, _, heading] = drive.room.pose;
+    let (sin, cos) = heading.sin_cos();
+    let ahead = x + (cos * f64::from(point.x_mm) - sin * f64::from(point.y_mm)) * 1e-3;
     assert!(
         (ahead - 17.0).abs() < 0.05,
         "the point lies on the wall: {ahead}"
@@ -178,7 +181,10 @@ fn a_goal_behind_the_wall_is_blocked_with_point_and_time() {
         "{:?}",
         drive.room.pose
     );
-    assert_eq!(answer.decision.reason, Reason::PathBlocked);
+    assert!(matches!(
+        answer.decision.reason,
+        Reason::PathBlocked | Reason::GuardBlocked
+    ));
 }
 
 #[test]

@@ -65,7 +65,7 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
         }
         let plan = self.steer(route, &course, &odometry, tick);
         match plan.outcome {
-            dwa::Outcome::Moving => self.dispose(plan, &odometry, tick, course.next),
+            dwa::Outcome::Moving => self.dispose(plan, route, &odometry, tick, course.next),
             dwa::Outcome::Arrived => {
                 self.watch.pause();
                 let mut outcome = self
@@ -84,11 +84,7 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
                 )
             }
             dwa::Outcome::Blocked(point) => {
-                let reason = if self.is_occupied(route, &odometry.pose) {
-                    Obstruction::GoalOccupied
-                } else {
-                    Obstruction::NoWay
-                };
+                let reason = self.reason(Obstruction::NoWay, route, &odometry);
                 self.blocked(tick, reason, point.and_then(body_point), Some(plan))
             }
             dwa::Outcome::Malformed => (
@@ -120,6 +116,7 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
     fn dispose(
         &mut self,
         plan: Plan,
+        route: &Route<'_>,
         odometry: &Odometry,
         tick: &Tick,
         next: usize,
@@ -160,10 +157,20 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
             }) => (Obstruction::Guard(refusal), point),
             _ => (Obstruction::NoWay, None),
         };
+        let reason = self.reason(reason, route, odometry);
         let (mut outcome, blocked) = self.blocked(tick, reason, point, Some(plan));
         outcome.verdict = attempt.refusal;
         attempt.progress = blocked.progress;
         (outcome, attempt)
+    }
+
+    /// `reason`, unless the destination itself is taken: that tells the caller more.
+    fn reason(&self, reason: Obstruction, route: &Route<'_>, odometry: &Odometry) -> Obstruction {
+        if self.is_occupied(route, &odometry.pose) {
+            Obstruction::GoalOccupied
+        } else {
+            reason
+        }
     }
 
     /// Brakes and says why.
