@@ -1,7 +1,8 @@
 //! Seeded faults: each is put into a copy of the checkout, where a named check must fail.
 //!
-//! Half are chosen ([`list`]), half are drawn from the list of `cargo mutants` by a fixed seed and
-//! kept in `verification/mutants.txt`. A fault that does not build is no fault and is reported.
+//! The chosen ones are in `list`; mutants drawn from elsewhere are read from
+//! `verification/mutants.txt`, if that file exists. A fault that does not build is no fault and is
+//! reported.
 
 mod list;
 
