@@ -131,7 +131,7 @@ fn set_point(decision: &Decision) -> (i32, i32) {
 
 //= spec/navigate.md#nav-09
 //= type=test
-//# Via points MUST be passed in their order; the destination MUST NOT count as reached before the last of them.
+//# Via points MUST be passed in their order, all of them before the destination counts as reached.
 #[test]
 fn drives_through_via_points_and_turns_to_its_heading() {
     let mut drive = Drive::new();

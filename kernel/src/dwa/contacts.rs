@@ -160,7 +160,7 @@ impl Contacts {
             *contact = obstacle.position;
             set(&mut self.sieve.chord, index, chord_of(key));
         //= spec/navigate.md#nav-04
-        //# A plan MUST NOT depend on the order of the points, and the same input MUST give the same plan.
+        //# A plan MUST depend on nothing but its input, and not on the order of the points.
         } else if key <= *least && precedes(obstacle.position, *contact) {
             *contact = obstacle.position;
         }

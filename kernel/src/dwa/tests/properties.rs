@@ -207,7 +207,7 @@ fn the_fast_pass_finds_the_least_arc_distance() {
 
 //= spec/navigate.md#nav-04
 //= type=test
-//# A plan MUST NOT depend on the order of the points, and the same input MUST give the same plan.
+//# A plan MUST depend on nothing but its input, and not on the order of the points.
 #[test]
 fn plans_do_not_depend_on_the_order_of_points() {
     let mut random = Random(0x5eed_0008);

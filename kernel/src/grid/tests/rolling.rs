@@ -67,7 +67,7 @@ proptest! {
 
 //= spec/grid.md#grid-05
 //= type=test
-//# Cells that enter a rolling grid MUST be unknown, and cells that stay MUST keep their value.
+//# Cells that enter a rolling grid MUST be unknown, while cells that stay keep their value.
 #[test]
 fn a_wall_left_behind_is_forgotten_on_return() {
     let mut small = Small::new(rules(UpdateRule::EveryBeam)).unwrap();

@@ -99,7 +99,7 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
         let straight = course.straight(route, &odometry.pose);
         let mut onward = course.onward(route, &odometry.pose, self.ahead_m());
         //= spec/navigate.md#nav-09
-        //# Via points MUST be passed in their order; the destination MUST NOT count as reached before the last of them.
+        //# Via points MUST be passed in their order, all of them before the destination counts as reached.
         if onward.is_reached() && !straight.is_goal {
             // The route comes by its own end: first what lies before it.
             onward = straight;
