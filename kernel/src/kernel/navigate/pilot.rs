@@ -125,7 +125,7 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
         let reference = self.kernel.pipeline.last();
         let mut attempt = Attempt::of(Progress::Driving { next }, Some(plan));
         //= spec/navigate.md#nav-05
-        //# When the guard refuses a candidate, the next ones MUST be tried in their order, at most eight in all; when none is left, the robot MUST brake.
+        //# When the guard refuses a candidate, the next ones MUST be tried in their order, at most eight in all, and the robot brakes when none is left.
         for (rank, candidate) in plan.candidates().iter().enumerate() {
             let config = self.kernel.config.config();
             let Some(vertex) = proposal::vertex(config, candidate.velocity) else {
