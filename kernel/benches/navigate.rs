@@ -1,7 +1,6 @@
 //! Wall-clock benchmarks of a full tick that drives to a goal (`cargo bench -p haltline --bench navigate`).
 //!
-//! A full tick takes in a scan and odometry, enters the scan into the planning grid, plans and
-//! has the plan judged. Read the times as ratios within one run.
+//! A full tick takes in a scan and odometry, plans and has the plan judged. Read the times as ratios within one run.
 #![allow(missing_docs, clippy::unwrap_used, clippy::panic)]
 
 #[path = "../tests/common/mod.rs"]
@@ -14,7 +13,7 @@ use haltline::input::{Beam, Inputs, Motion, Reading, Scan};
 use haltline::kernel::navigate::{Destination, Navigation, Planning, Route};
 use haltline::time::{Duration, Instant};
 
-type Pilot = Navigator<1, 541, 1024, 160, 160>;
+type Pilot = Navigator<1, 541, 1024>;
 
 fn main() {
     divan::main();
@@ -84,6 +83,7 @@ impl Tick {
                 heading: None,
                 heading_tolerance: 0,
             },
+            ..Route::default()
         };
         self.pilot.step(&inputs, drives.then_some(&route), self.now)
     }

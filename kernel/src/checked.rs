@@ -104,10 +104,16 @@ impl<const S: usize> KernelConfig<S> {
     pub fn reaction_us(&self, odometry_age: Duration) -> u64 {
         let timing = &self.config.timing;
         let tick = timing.period.plus(timing.jitter);
+        //= spec/guard.md#guard-12
+        //# With host death covered, the tube MUST contain every trajectory in which the drive goes on until its
+        //# watchdog time has passed since it received the last decision and then brakes by itself.
         let silence = self
             .config
             .host_death
             .map_or(Duration::ZERO, |death| death.watchdog);
+        //= spec/guard.md#guard-04
+        //# The hold time of a tube MUST be at least the age of the odometry sample plus control period, jitter and
+        //# actuation latency, counted from the odometry stamp, at whose pose the tube starts.
         odometry_age
             .plus(timing.actuation_latency)
             .plus(tick.max(silence))

@@ -31,6 +31,8 @@ pub enum Round {
 #[must_use]
 pub fn round(value: f64, how: Round) -> Option<i64> {
     const EXACT: f64 = 4_503_599_627_370_496.0;
+    //= spec/input.md#input-09
+    //# A number that is not finite or out of range MUST make the value it belongs to malformed.
     // A NaN fails both comparisons.
     if !(value > -EXACT && value < EXACT) {
         return None;
@@ -140,6 +142,8 @@ pub enum BeamEncoding {
 /// Ranges round to the nearest millimetre; the guard's rounding term covers the
 /// half millimetre, since neither direction is safe for every robot. Below `range_min` is [`Beam::TooNear`],
 /// beyond `range_max` is [`Beam::NoReturn`]; negative ranges are invalid.
+//= spec/input.md#input-01
+//# Every bit pattern of a beam MUST be classified as exactly one of hit, no-return, too-near and invalid.
 #[must_use]
 pub fn beam(range_m: f32, encoding: BeamEncoding, range_min: Length, range_max: Length) -> Beam {
     let metres = f64::from(range_m);

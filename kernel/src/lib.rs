@@ -1,4 +1,8 @@
 //! A navigation safety kernel: `no_std`, allocation-free, bounded-time, without `unsafe`.
+//= spec/time.md#time-02
+//# A tick MUST NOT panic, allocate or recurse.
+//= spec/time.md#time-03
+//# The kernel MUST contain no unsafe code.
 #![no_std]
 // Tests may compute as they like; what they test may not.
 #![cfg_attr(

@@ -32,6 +32,10 @@ pub fn order(stamp: Instant, newest: Option<Instant>, now: Instant) -> Order {
     if stamp > now {
         return Order::Future;
     }
+    //= spec/input.md#input-08
+    //# A value stamped no later than the newest of its channel MUST NOT replace it.
+    //= spec/fresh.md#fresh-05
+    //# A channel found stale MUST stay stale until a usable value with a newer stamp arrives.
     match newest {
         Some(newest) if stamp < newest => Order::Older,
         Some(newest) if stamp == newest => Order::Same,
@@ -42,6 +46,10 @@ pub fn order(stamp: Instant, newest: Option<Instant>, now: Instant) -> Order {
 /// Whether something stamped `stamp` is too old at `now`; the future is stale.
 #[must_use]
 pub fn is_stale(stamp: Instant, now: Instant, age_max: Duration) -> bool {
+    //= spec/fresh.md#fresh-04
+    //# Data stamped later than `now` MUST be treated as stale.
+    //= spec/fresh.md#fresh-08
+    //# An age limit of zero MUST NOT switch a freshness check off.
     now.since(stamp).is_none_or(|age| age > age_max)
 }
 
@@ -51,6 +59,8 @@ pub fn is_stale(stamp: Instant, now: Instant, age_max: Duration) -> bool {
 /// INPUT-05, INPUT-06, INPUT-07.
 #[must_use]
 pub fn beams_usable(scanner: &Scanner, beams: &[Beam]) -> bool {
+    //= spec/input.md#input-07
+    //# A scan with the wrong number of beams or an unknown scanner MUST be unusable.
     if beams.len() != usize::from(scanner.beams) {
         return false;
     }
@@ -64,38 +74,44 @@ pub fn beams_usable(scanner: &Scanner, beams: &[Beam]) -> bool {
             run = 0;
         }
     }
+    //= spec/input.md#input-05
+    //# A scan with a larger part of invalid beams than `invalid_max` MUST be unusable.
     let allowed = u64::from(scanner.beams).saturating_mul(u64::from(scanner.invalid_max.as_ppm()));
+    //= spec/input.md#input-06
+    //# A scan with a wider run of consecutive invalid beams than `invalid_gap_max` MUST be unusable.
     let gap = longest.saturating_mul(u64::from(scanner.increment.unsigned_abs()));
     invalid.saturating_mul(MICRO) <= allowed && gap <= u64::from(scanner.invalid_gap_max)
 }
 
 /// Whether a scan returns from inside `zone` (millimetres, body frame), as the scanner stands on
-/// the robot: needs no odometry, so no scan waits for it.
+/// the robot: needs no odometry, so no scan waits for it. A too-near beam does, whatever the zone.
 ///
 /// # Source
-/// ZONE-01.
+/// ZONE-01, INPUT-02.
 #[must_use]
 pub fn returns_from_zone(scanner: &Scanner, beams: &[Beam], zone: Rect) -> bool {
     let millimetres = |length: Length| length.as_um().div_euclid(1000);
     let mut direction = scanner.first_beam;
     beams.iter().any(|beam| {
-        let range = match beam {
-            Beam::Hit(range) => Some(i32::from(*range)),
-            Beam::TooNear => Some(millimetres(scanner.range_min)),
-            Beam::NoReturn | Beam::Invalid => None,
-        };
         let along = direction;
         direction = direction.plus(BinaryAngle::from_counts(scanner.increment.cast_unsigned()));
-        range.is_some_and(|range| {
-            let hit = polar(range, along);
-            let body = PointMm {
-                x: hit.x.saturating_add(millimetres(scanner.x)),
-                y: hit.y.saturating_add(millimetres(scanner.y)),
-            };
-            let own = matches!(beam, Beam::Hit(_))
-                && scanner.masks.iter().flatten().any(|mask| masks(mask, body));
-            zone.contains(body) && !own
-        })
+        match beam {
+            // It may stand anywhere before the least range, up to the scanner itself.
+            Beam::TooNear => true,
+            Beam::NoReturn | Beam::Invalid => false,
+            Beam::Hit(range) => {
+                let hit = polar(i32::from(*range), along);
+                let body = PointMm {
+                    x: hit.x.saturating_add(millimetres(scanner.x)),
+                    y: hit.y.saturating_add(millimetres(scanner.y)),
+                };
+                //= spec/zone.md#zone-03
+                //# A return MUST NOT be dropped as a part of the robot unless it lies in a self-mask of the scanner that
+                //# saw it.
+                let mut own = scanner.masks.iter().flatten();
+                zone.contains(body) && !own.any(|mask| masks(mask, body))
+            }
+        }
     })
 }
 
@@ -148,6 +164,8 @@ pub fn odometry_fault<const S: usize>(
         .saturating_add(magnitude(bounds.follow_angular_speed.as_urad_per_s()));
     let far = mul_micro_up(fastest, span).saturating_add(POSE_SLACK_UM);
     let wide = mul_micro_up(turning, span).saturating_add(POSE_SLACK_URAD);
+    //= spec/input.md#input-11
+    //# The kernel MUST stop when the odometry pose moved farther between two samples than the robot can.
     if distance_um(before, after) > far || turned > wide {
         return Some(Reason::OdometryJump);
     }
@@ -182,6 +200,8 @@ fn consistency<const S: usize>(
         .saturating_mul(i64::from(counts.signum()));
     let slack = mul_micro_up(magnitude(bounds.follow_angular_speed.as_urad_per_s()), span)
         .saturating_add(POSE_SLACK_URAD);
+    //= spec/input.md#input-12
+    //# The kernel MUST stop when odometry pose and odometry twist contradict each other.
     if turned.saturating_sub(measured_turn).unsigned_abs() > slack {
         return Some(Reason::OdometryInconsistent);
     }

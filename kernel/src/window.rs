@@ -37,10 +37,14 @@ pub fn desired<const S: usize>(
             }
             arc(*linear, *curvature)
         }
+        //= spec/limit.md#limit-09
+        //# A desired motion of the wrong kind for the drive MUST be treated as malformed.
         _ => return Err(Reason::CommandMalformed),
     };
     let limits = &config.limits;
     let v = vertex.twist.linear.as_um_per_s();
+    //= spec/limit.md#limit-03
+    //# A set point MUST NOT be negative in speed where the reverse limit is zero.
     if v < 0 && limits.speed_reverse == Speed::ZERO {
         return Err(Reason::ReverseNotAllowed);
     }
@@ -82,6 +86,8 @@ fn arc(linear: Speed, curvature: Curvature) -> Vertex {
 }
 
 /// `vertex` times `part / whole`, towards zero, on the same curvature.
+//= spec/limit.md#limit-08
+//# A motion that `limit` slowed MUST keep the curvature of the motion it was derived from.
 fn scaled(vertex: Vertex, part: i64, whole: i64) -> Vertex {
     let times = |value: i32| {
         narrow(
@@ -101,6 +107,9 @@ fn scaled(vertex: Vertex, part: i64, whole: i64) -> Vertex {
 }
 
 /// The command nearest to `desired · factor` that acceleration allows `step` after `reference`.
+///
+/// Speed and turn rate take the same share of their ways: between two motions of one curvature the
+/// curvature stays, also while the robot speeds up or slows down.
 #[must_use]
 pub fn towards<const S: usize>(
     config: &Config<S>,
@@ -127,12 +136,49 @@ pub fn towards<const S: usize>(
         rate(limits.angular_acceleration.as_urad_per_s2()),
         rate(limits.angular_braking.as_urad_per_s2()),
     );
+    let ways = [
+        (
+            reference.twist.linear.as_um_per_s(),
+            target.twist.linear.as_um_per_s(),
+        ),
+        (
+            reference.twist.angular.as_urad_per_s(),
+            target.twist.angular.as_urad_per_s(),
+        ),
+    ];
+    let [v, w] = ways;
+    let part = share(v, linear).min(share(w, angular));
+    let [linear, angular] = ways.map(|way| along(way, part));
     Vertex {
         twist: Twist {
             linear: Speed::from_um_per_s(linear),
             angular: AngularSpeed::from_urad_per_s(angular),
         },
         curvature: Curvature::ZERO,
+    }
+}
+
+/// Shares of a way are counted in 2⁻³⁰.
+const WHOLE: u64 = 1 << 30;
+
+/// Which share of the way `from`, `to` leads to `next`, rounded down.
+fn share((from, to): (i32, i32), next: i32) -> u64 {
+    let way = |to: i32| u64::from(from.abs_diff(to));
+    way(next)
+        .saturating_mul(WHOLE)
+        .checked_div(way(to))
+        .unwrap_or(WHOLE)
+}
+
+/// The place after a share of a way, to the nearest count: never beyond the place it was taken from.
+fn along((from, to): (i32, i32), part: u64) -> i32 {
+    let way = u64::from(from.abs_diff(to));
+    let gone = way.saturating_mul(part).saturating_add(WHOLE / 2) / WHOLE;
+    let gone = i32::try_from(gone).unwrap_or(i32::MAX);
+    if to < from {
+        from.saturating_sub(gone)
+    } else {
+        from.saturating_add(gone)
     }
 }
 
@@ -202,12 +248,18 @@ pub fn braked<const S: usize>(config: &Config<S>, reference: Vertex, step: Durat
         ));
     }
     let left = stop.saturating_sub(step.as_us());
+    //= spec/brake.md#brake-07
+    //# A braking manoeuvre that is not replaced by an accepted motion MUST end with a set point of exactly zero.
     if left == 0 {
         return Vertex {
             twist: Twist::default(),
             curvature: reference.curvature,
         };
     }
+    //= spec/brake.md#brake-03
+    //# Braking set points of a differential drive MUST keep the ratio of speed to turn rate.
+    //= spec/brake.md#brake-04
+    //# Braking set points of an Ackermann drive MUST keep the commanded curvature.
     scaled(
         reference,
         i64::try_from(left).unwrap_or(0),
@@ -228,11 +280,16 @@ pub fn admissible<const S: usize>(
         candidate.twist.linear.as_um_per_s(),
         candidate.twist.angular.as_urad_per_s(),
     );
+    //= spec/limit.md#limit-01
+    //# The speed of every set point MUST lie between minus the reverse limit and the forward limit.
     let within_speeds = v <= limits.speed_forward.as_um_per_s()
         && v >= limits.speed_reverse.as_um_per_s().saturating_neg();
     let near = |value: i32, from: i32, fast: u32, slow: u32| {
         magnitude(value.saturating_sub(from)) <= magnitude(rate_step(fast.max(slow), step))
     };
+    //= spec/limit.md#limit-04
+    //# An accepted set point MUST differ from the one before by no more than the acceleration limits allow in the
+    //# time between them.
     let reachable = near(
         v,
         reference.twist.linear.as_um_per_s(),
@@ -241,10 +298,14 @@ pub fn admissible<const S: usize>(
     );
     let turn = match config.kinematics {
         Kinematics::Ackermann { curvature_max, .. } => {
+            //= spec/limit.md#limit-05
+            //# The curvature of every Ackermann set point MUST NOT exceed the curvature limit in magnitude.
             magnitude(candidate.curvature.as_urad_per_m())
                 <= magnitude(curvature_max.as_urad_per_m())
         }
         Kinematics::Differential => {
+            //= spec/limit.md#limit-02
+            //# The turn rate of every set point MUST NOT exceed the turn rate limit in magnitude.
             magnitude(w) <= magnitude(limits.angular_speed.as_urad_per_s())
                 && near(
                     w,

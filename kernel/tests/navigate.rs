@@ -12,14 +12,18 @@ mod common;
 use common::{Room, config, m};
 use haltline::Navigator;
 use haltline::decision::{Action, Decision, Reason, StopStatus};
-use haltline::input::{Inputs, Motion, Reading, Scan};
+use haltline::input::{Inputs, Motion, Pose, Reading, Scan};
 use haltline::kernel::navigate::{
-    Blocked, Destination, Navigation, Obstruction, Planning, Progress, ProgressRules, Route, Via,
+    Blocked, Destination, Localiser, Navigation, Obstruction, Planning, Progress, ProgressRules,
+    Route, VIA_MAX, Via,
+};
+use haltline::marker::{
+    FilterRules, Frame, Health, MarkerEkf, MarkerFilter, Pose2, Prediction, Sighting, SightingNoise,
 };
 use haltline::time::{Duration, Instant};
 use haltline::units::BinaryAngle;
 
-type Pilot = Navigator<1, 541, 1024, 160, 160>;
+type Pilot = Navigator<1, 541, 1024>;
 
 struct Drive {
     room: Room,
@@ -55,6 +59,7 @@ fn order(stamp: Instant, via: &[Via], goal: Destination) -> Route<'_> {
         id: 1,
         via,
         goal,
+        ..Route::default()
     }
 }
 
@@ -342,17 +347,16 @@ fn moving_without_coming_nearer_ends_the_route_until_another() {
 }
 
 #[test]
-fn the_planning_grid_knows_the_walls() {
-    use haltline::grid::Occupancy;
+fn a_route_with_too_many_via_points_is_refused_whole() {
     let mut drive = Drive::new();
-    for _ in 0..10 {
-        let _ = drive.tick(None, false);
-    }
-    let grid = drive.pilot.grid().grid();
-    let at = |x: f64, y: f64| grid.occupancy(grid.cell_at(um(x), um(y)).unwrap());
-    assert_eq!(at(0.05, 4.02), Occupancy::Occupied);
-    assert_eq!(at(2.05, 0.05), Occupancy::Free);
-    assert_eq!(at(2.05, 6.05), Occupancy::Unknown);
+    let ordered = drive.room.now();
+    let vias = vec![via(2.0, 0.0); VIA_MAX + 1];
+    let long = order(ordered, &vias, goal(3.0, 0.0));
+    let answer = drive.tick(Some(&long), false);
+    assert_eq!(answer.decision.reason, Reason::CommandMalformed);
+    let longest = order(ordered, &vias[1..], goal(3.0, 0.0));
+    let answer = drive.tick(Some(&longest), false);
+    assert_ne!(answer.decision.reason, Reason::CommandMalformed);
 }
 
 #[test]
@@ -363,4 +367,131 @@ fn planning_that_makes_no_sense_is_refused() {
     planning = Planning::default();
     planning.progress.time = Duration::ZERO;
     assert!(Pilot::new(config(), planning).is_err());
+}
+
+/// A quarter turn to the left, counts of 2^-32 turn.
+const QUARTER: u32 = 1 << 30;
+
+//= spec/navigate.md#nav-13
+//= type=test
+//# A route MUST be followed at the robot's pose in the frame of the route.
+#[test]
+fn a_route_in_a_map_leads_to_the_same_place() {
+    let mut plain = Drive::new();
+    let points = [via(2.0, 0.5)];
+    let here = order(plain.room.now(), &points, goal(4.0, -0.5));
+    let _ = plain.follow(&here);
+    // The odometry frame lies at (10, -3) in the map, turned left: (x, y) is (10 - y, -3 + x) there.
+    let mut mapped = Drive::new();
+    let points = [via(9.5, -1.0)];
+    let there = Route {
+        odometry_frame: Pose {
+            x_um: um(10.0),
+            y_um: um(-3.0),
+            heading: BinaryAngle::from_counts(QUARTER),
+        },
+        ..order(mapped.room.now(), &points, goal(10.5, 1.0))
+    };
+    let answer = mapped.follow(&there);
+    assert_eq!(answer.progress, Progress::Arrived);
+    let off = |axis: usize| (plain.room.pose[axis] - mapped.room.pose[axis]).abs();
+    assert!(off(0) < 0.01 && off(1) < 0.01, "{:?}", mapped.room.pose);
+    assert!(
+        (mapped.room.pose[0] - 4.0).abs() < 0.2,
+        "{:?}",
+        mapped.room.pose
+    );
+}
+
+fn localiser() -> Localiser<MarkerEkf<4, 24>> {
+    let start = Pose2::new(1.0, 2.0, 0.5);
+    let mut filter = MarkerEkf::new(FilterRules::default(), start, [1e-4, 1e-4, 1e-5]).unwrap();
+    filter.add_mapped(3, Pose2::new(4.0, 2.0, 3.0)).unwrap();
+    Localiser::new(filter)
+}
+
+//= spec/navigate.md#nav-14
+//= type=test
+//# While the filter is lost, or has not taken the newest odometry, the localiser MUST NOT give a frame.
+#[test]
+fn a_lost_or_late_filter_gives_no_frame() {
+    let mut localiser = localiser();
+    let room = Room::new((-3.0, 17.0), (-4.0, 4.0), config());
+    let mut sample = room.odometry();
+    assert_eq!(
+        localiser.odometry_frame(sample.stamp),
+        None,
+        "no odometry yet"
+    );
+    assert_eq!(localiser.odometry(&sample), Prediction::Done);
+    let frame = localiser.odometry_frame(sample.stamp).unwrap();
+    assert_eq!((frame.x_um, frame.y_um), (um(1.0), um(2.0)));
+    let later = sample.stamp.plus(Duration::from_ms(40));
+    assert_eq!(
+        localiser.odometry_frame(later),
+        None,
+        "odometry it has not seen"
+    );
+    // A jump that no robot makes is refused, and so is everything after it.
+    sample.stamp = later;
+    sample.pose.x_um += um(500.0);
+    assert_eq!(localiser.odometry(&sample), Prediction::Malformed);
+    assert_eq!(localiser.odometry_frame(later), None);
+    sample.pose.x_um -= um(500.0);
+    let mut found = Health::Tracking;
+    for tick in 1..60_u64 {
+        sample.stamp = later.plus(Duration::from_ms(40 * tick));
+        assert_eq!(localiser.odometry(&sample), Prediction::Done);
+        let given = localiser.odometry_frame(sample.stamp);
+        assert_eq!(given.is_some(), found == Health::Tracking, "tick {tick}");
+        // The known marker where it cannot be, and each time elsewhere.
+        let off = tick as f64 * 0.05;
+        let seen = Pose2::new(1.0 + off, -2.0 + 2.0 * off, -1.0 + off);
+        let noise = SightingNoise::isotropic(0.02, 0.02);
+        let sightings = [Sighting::pose(3, seen, noise)];
+        let _ = localiser.frame(&Frame {
+            camera: 0,
+            stamp: sample.stamp,
+            sightings: &sightings,
+        });
+        found = localiser.filter().health();
+    }
+    assert_ne!(found, Health::Tracking, "it must get lost");
+}
+
+//= spec/navigate.md#nav-01
+//= type=test
+//# Every set point of the navigator that is not a braking one MUST be certified by the guard in the same tick.
+//= spec/navigate.md#nav-05
+//= type=test
+//# When the guard refuses a candidate, the next ones MUST be tried in their order, at most eight in all, and the robot brakes when none is left.
+#[test]
+fn the_guard_decides_on_every_candidate() {
+    let (mut certified, mut after_refusal, mut none_left) = (0, 0, 0);
+    for (x, y) in [(20.0, 0.0), (16.0, 6.0), (-6.0, 1.0), (8.0, -3.4)] {
+        let mut drive = Drive::new();
+        let stamp = drive.room.now();
+        let mut before = (0_i32, 0_i32);
+        for _ in 0..600 {
+            let answer = drive.tick(Some(&order(stamp, &[], goal(x, y))), false);
+            let decision = &answer.decision;
+            let set = set_point(decision);
+            assert!(answer.refused <= 8, "{answer:?}");
+            match decision.verdict {
+                Some(verdict) if verdict.refusal.is_none() => {
+                    certified += 1;
+                    after_refusal += usize::from(answer.refused > 0);
+                }
+                // Refused, or nothing was asked for: a braking set point.
+                other => {
+                    assert!(set.0.abs() <= before.0.abs() && set.1.abs() <= before.1.abs());
+                    assert!(decision.action >= Action::Brake || answer.refused == 0);
+                    none_left += usize::from(other.is_some());
+                }
+            }
+            before = set;
+        }
+    }
+    println!("{certified} certified, {after_refusal} after a refusal, {none_left} with none left");
+    assert!(certified > 500 && after_refusal > 0 && none_left > 0);
 }

@@ -64,6 +64,9 @@ fn twist_of(decision: &Decision) -> Twist {
 }
 
 /// A stop command with the wheels turned over once swung a moving car aside, uncertified.
+//= spec/brake.md#brake-04
+//= type=test
+//# Braking set points of an Ackermann drive MUST keep the commanded curvature.
 #[test]
 fn a_stop_command_turns_no_wheel_while_the_car_moves() {
     let mut room = Room::new((-6.0, 9.0), (-4.0, 4.0), steered());

@@ -117,9 +117,12 @@ pub fn parse_yaml(text: &str, file: &str) -> Result<Description, MapError> {
     }
     if let Some(entry) = get("free_thresh") {
         description.free_thresh = entry.number(file, 0.0..=1.0)?;
-        if description.free_thresh > description.occupied_thresh {
-            return Err(entry.error(file, "keep free_thresh at most occupied_thresh"));
-        }
+    }
+    // One of them may stand alone, against the default of the other.
+    if let Some(entry) = get("free_thresh").or_else(|| get("occupied_thresh"))
+        && description.free_thresh > description.occupied_thresh
+    {
+        return Err(entry.error(file, "keep free_thresh at most occupied_thresh"));
     }
     if let Some(entry) = get("negate") {
         description.negate = match entry.value.as_str() {

@@ -80,6 +80,8 @@ static void run(const std::string& folder, const std::string& robot)
 	for (const auto& row : rows(folder + "/Barcodes.dat", 2)) subjects[int(row[1])] = int(row[0]);
 
 	mrpt::slam::CRangeBearingKFSLAM2D filter;
+	// It says of each new landmark that it did not expect it.
+	filter.setMinLoggingLevel(mrpt::system::LVL_ERROR);
 	filter.options.std_sensor_range = 0.13f;
 	filter.options.std_sensor_yaw = 0.03f;
 	mrpt::obs::CActionRobotMovement2D::TMotionModelOptions motion;

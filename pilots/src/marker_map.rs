@@ -5,6 +5,7 @@
 
 use haltline::marker::{FilterError, IDS, MarkerEkf, POSITION_MAX_M, Pose2};
 use std::fmt;
+use std::path::{Path, PathBuf};
 
 /// The column names, which may stand in the first line.
 pub const HEADER: &str = "id,x_m,y_m,heading_deg";
@@ -35,7 +36,41 @@ pub struct MapEntry {
     pub pose: Pose2,
 }
 
-/// Reads a map.
+/// Why a file holds no map.
+#[derive(Debug)]
+pub enum FileError {
+    /// It cannot be read, or is no text.
+    Unreadable(PathBuf, std::io::Error),
+    /// A line of it is wrong.
+    Wrong(PathBuf, MapError),
+}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable(path, error) => {
+                write!(out, "{}: cannot be read: {error}", path.display())
+            }
+            Self::Wrong(path, MapError { line, message }) => {
+                write!(out, "{}:{line}: {message}", path.display())
+            }
+        }
+    }
+}
+
+impl std::error::Error for FileError {}
+
+/// Reads a map from a file, such as `pilots/maps/loh_field_test.csv`.
+///
+/// # Errors
+/// A file that cannot be read, or what [`parse`] refuses, with file and line.
+pub fn read(path: &Path) -> Result<Vec<MapEntry>, FileError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| FileError::Unreadable(path.to_owned(), error))?;
+    parse(&text).map_err(|error| FileError::Wrong(path.to_owned(), error))
+}
+
+/// Reads a map from text.
 ///
 /// # Errors
 /// The first line that is not understood, or an id that occurs twice.
@@ -155,6 +190,19 @@ mod tests {
             assert_eq!(error.line, line, "{text}");
             assert!(error.to_string().contains(part), "{error}");
         }
+    }
+
+    #[test]
+    fn errors_of_a_file_name_it() {
+        let missing = read(Path::new("no/such.csv")).unwrap_err().to_string();
+        assert!(
+            missing.starts_with("no/such.csv: cannot be read: "),
+            "{missing}"
+        );
+        let this = Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml");
+        let wrong = read(&this).unwrap_err().to_string();
+        let expected = format!("{}:1: 1 columns; write four", this.display());
+        assert!(wrong.starts_with(&expected), "{wrong}");
     }
 
     #[test]

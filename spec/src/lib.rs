@@ -7,6 +7,7 @@
 //! shares no computation with the kernel and never names its types.
 
 pub mod draw;
+pub mod exact;
 pub mod motion;
 pub mod plane;
 pub mod plant;

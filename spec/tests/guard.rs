@@ -69,6 +69,25 @@ fn truthful(name: &str, cases: u32, styles: &[Style], moving: bool, change: fn(&
 //= spec/brake.md#brake-02
 //= type=test
 //# At every tick the robot MUST be at rest or inside a tube that was accepted at an earlier tick and not yet left by time.
+//= spec/limit.md#limit-01
+//= type=test
+//# The speed of every set point MUST lie between minus the reverse limit and the forward limit.
+//= spec/limit.md#limit-02
+//= type=test
+//# The turn rate of every set point MUST NOT exceed the turn rate limit in magnitude.
+//= spec/limit.md#limit-04
+//= type=test
+//# An accepted set point MUST differ from the one before by no more than the acceleration limits allow in the time
+//# between them.
+//= spec/silent.md#silent-01
+//= type=test
+//# Every decision MUST expire no later than one control period plus jitter after its tick.
+//= spec/brake.md#brake-03
+//= type=test
+//# Braking set points of a differential drive MUST keep the ratio of speed to turn rate.
+//= spec/latch.md#latch-07
+//= type=test
+//# The set point MUST NOT grow in magnitude while a stop is active.
 #[test]
 fn differential_in_a_static_world() {
     truthful("static", 60, &ALL, false, |episode| episode.steered = false);
@@ -87,6 +106,9 @@ fn differential_among_moving_bodies() {
 //= type=test
 //# The curvature interval of an Ackermann tube MUST contain every wheel angle the steering can have at any moment of the
 //# tube, widened by the curvature tolerance.
+//= spec/limit.md#limit-05
+//= type=test
+//# The curvature of every Ackermann set point MUST NOT exceed the curvature limit in magnitude.
 #[test]
 fn steered_in_a_static_world() {
     truthful("steered", 60, &ALL, false, |episode| episode.steered = true);

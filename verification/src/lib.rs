@@ -8,5 +8,6 @@
 pub mod enumerate;
 pub mod faults;
 pub mod image;
+pub mod measure;
 pub mod prove;
 pub mod timing;

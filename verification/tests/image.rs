@@ -12,7 +12,12 @@ fn folder(name: &str) -> PathBuf {
 fn every_door_of_the_release_kernel_is_free_of_panics_and_allocation() {
     let image = Image::build(&folder("image"), false).unwrap();
     let functions = image.functions().unwrap();
-    for door in ["image_step", "image_navigate", "image_correct"] {
+    for door in [
+        "image_step",
+        "image_navigate",
+        "image_grid",
+        "image_correct",
+    ] {
         assert!(
             functions.iter().any(|name| name == door),
             "{door} is among {functions:?}"

@@ -1,7 +1,6 @@
 //! From scored samples to a short, ordered list of candidates.
 
-use super::arc::Course;
-use super::arc::{Clearance, Turn};
+use super::arc::{Clearance, Course, Turn};
 use super::lanes::{LANES, Lane, PRESENT, SPEEDS};
 use super::margin::{rate_for, worst_stop};
 use super::objective::{Sighting, score};
@@ -91,19 +90,23 @@ impl Choice<'_> {
         best
     }
 
+    /// The turn that faces the aim, left positive, rad.
+    const fn turn_to(&self, aim: Aim) -> f64 {
+        match aim {
+            Aim::Position => self.sighting.bearing_rad,
+            Aim::Heading(angle) => angle,
+        }
+    }
+
     /// The rates of `lane` that are worth sampling.
     fn rates(&self, lane: &Lane, aim: Aim, enough: f64) -> Option<Interval> {
         let limits = &self.situation.limits;
         let tuning = &self.situation.tuning;
-        let bearing = self.sighting.bearing_rad;
         match (lane.course, aim) {
             (Course::Arc { .. }, Aim::Heading(_)) => None,
             (Course::Arc { .. }, Aim::Position) => Some(lane.rates.intersection(self.speeds)),
             (Course::Spot(turn), aim) => {
-                let angle = match aim {
-                    Aim::Position => bearing,
-                    Aim::Heading(angle) => angle,
-                };
+                let angle = self.turn_to(aim);
                 let towards = if turn == Turn::Left { angle } else { -angle };
                 let most = rate_for(
                     towards,
@@ -177,7 +180,7 @@ impl Choice<'_> {
                 .rates
                 .clamp(rates.low + (rates.high - rates.low) * part);
             let velocity = lane.velocity(rate, self.window);
-            if !self.is_admissible(velocity, clearance) {
+            if !self.is_admissible(velocity, clearance, aim) {
                 continue;
             }
             let candidate = Candidate {
@@ -215,7 +218,7 @@ impl Choice<'_> {
             && velocity.linear_mps > 0.0
             && lane.rates.contains(velocity.linear_mps)
             && (bend * velocity.linear_mps - velocity.angular_radps).abs() < SAME_RADPS
-            && self.is_admissible(velocity, clearance);
+            && self.is_admissible(velocity, clearance, aim);
         goes_on.then(|| Candidate {
             velocity,
             score: score(
@@ -224,19 +227,19 @@ impl Choice<'_> {
                 self.sighting,
                 (PRESENT, lane),
                 velocity.linear_mps,
-                1.0,
+                self.open(lane, self.survey.ahead.clearance(PRESENT, lane)),
             ),
             clearance,
         })
     }
 
     /// V_a: whether the robot can stop within `clearance`, whatever it was told before (Loh 4.5).
-    fn is_admissible(&self, velocity: Velocity, clearance: Clearance) -> bool {
+    fn is_admissible(&self, velocity: Velocity, clearance: Clearance, aim: Aim) -> bool {
         //= spec/navigate.md#nav-03
         //# The robot MUST be able to stop within the clearance of every candidate, even if any motion that may still be executing goes on for the reaction time.
         let moves = velocity.linear_mps > 0.0 || velocity.angular_radps.abs() > 0.0;
         let start = if self.situation.is_at_rest() {
-            self.worth_starting(velocity)
+            self.worth_starting(velocity, aim)
         } else {
             0.0
         };
@@ -246,21 +249,18 @@ impl Choice<'_> {
     /// How much more than a stop must be free for it to be worth leaving rest, m (rad on the spot).
     ///
     /// Without it a robot before a wall would go on in steps of a millimetre.
-    fn worth_starting(&self, velocity: Velocity) -> f64 {
+    fn worth_starting(&self, velocity: Velocity, aim: Aim) -> f64 {
         let least = self.situation.tuning.start_m;
         if velocity.linear_mps > 0.0 {
             least.min(self.sighting.distance_m)
         } else {
-            (least / self.situation.footprint.corner_m()).min(self.sighting.bearing_rad.abs())
+            (least / self.situation.footprint.corner_m()).min(self.turn_to(aim).abs())
         }
     }
 
     /// The point that ends the way towards the aim.
     fn blocker(&self, aim: Aim) -> Option<super::footprint::Point> {
-        let angle = match aim {
-            Aim::Position => self.sighting.bearing_rad,
-            Aim::Heading(angle) => angle,
-        };
+        let angle = self.turn_to(aim);
         let side = if angle > 0.0 { Turn::Left } else { Turn::Right };
         let turning = self
             .lanes

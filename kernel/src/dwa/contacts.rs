@@ -155,12 +155,12 @@ impl Contacts {
             return;
         };
         let key = contact_key(situation, lane, swept, obstacle);
+        //= spec/navigate.md#nav-04
+        //# A plan MUST depend on nothing but its input, and not on the order of the points.
         if key < *least {
             *least = key;
             *contact = obstacle.position;
             set(&mut self.sieve.chord, index, chord_of(key));
-        //= spec/navigate.md#nav-04
-        //# A plan MUST depend on nothing but its input, and not on the order of the points.
         } else if key <= *least && precedes(obstacle.position, *contact) {
             *contact = obstacle.position;
         }

@@ -211,7 +211,7 @@ pub enum Outcome {
     Malformed,
 }
 
-/// The answer: the best candidates, best first. Without any the robot must stop.
+/// The answer: the best candidates, see [`Plan::candidates`]. Without any the robot must stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
     /// Why.
@@ -229,7 +229,8 @@ impl Plan {
         }
     }
 
-    /// The candidates, best first; try the next when the guard refuses one.
+    /// The best candidate, then going on as commanded where that is admissible, then the others by
+    /// their scores, last the slowest on the best path; try the next when the guard refuses one.
     #[must_use]
     pub fn candidates(&self) -> &[Candidate] {
         self.candidates.get(..self.count).unwrap_or_default()

@@ -39,6 +39,8 @@ impl<const W: usize, const H: usize> OccupancyGrid<W, H> {
         let start = self.frame.spot(sensor.x_um, sensor.y_um);
         for (direction, echo) in fan.echoes() {
             layer.cross(start, direction, echo);
+            //= spec/grid.md#grid-02
+            //# With the every-beam rule, the cell of a hit MUST be occupied after the scan.
             if let Echo::Hit { range_um } = echo {
                 let (x, y) = along(direction, range_um);
                 let (x, y) = (sensor.x_um.saturating_add(x), sensor.y_um.saturating_add(y));
@@ -64,6 +66,8 @@ impl<const W: usize, const H: usize> OccupancyGrid<W, H> {
                 continue;
             };
             for (cell, &evidence) in cells.iter_mut().zip(evidence) {
+                //= spec/grid.md#grid-01
+                //# The value of every cell MUST stay between floor and ceiling.
                 *cell = match evidence {
                     NONE => *cell,
                     HIT => cell.saturating_add(occupied).max(threshold).min(ceiling),

@@ -193,6 +193,8 @@ impl<const W: usize, const H: usize> OccupancyGrid<W, H> {
         match self.log_odds(cell) {
             Some(value) if value >= self.rules.occupied_from => Occupancy::Occupied,
             Some(value) if value <= self.rules.free_to => Occupancy::Free,
+            //= spec/grid.md#grid-03
+            //# A place off the grid MUST be unknown.
             _ => Occupancy::Unknown,
         }
     }
@@ -255,6 +257,8 @@ impl<const W: usize, const H: usize> OccupancyGrid<W, H> {
         if steps.saturating_mul(u64::from(scanner.increment.unsigned_abs())) > u64::from(u32::MAX) {
             return Err(ScanRefused::Fan);
         }
+        //= spec/grid.md#grid-04
+        //# A scan that cannot be placed MUST NOT change any cell.
         let place = self.frame.place(pose).ok_or(ScanRefused::Pose)?;
         let sensor = GridFrame::mounted(place, scanner);
         let fan = Fan::new(scanner, beams, place.heading);

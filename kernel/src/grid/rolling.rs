@@ -53,6 +53,8 @@ impl<const W: usize, const H: usize> RollingGrid<W, H> {
             let Some(cells) = window.row(row).and_then(|row| grid.log_odds.get_mut(row)) else {
                 continue;
             };
+            //= spec/grid.md#grid-05
+            //# Cells that enter a rolling grid MUST be unknown, while cells that stay keep their value.
             if !rows.contains(&row) {
                 cells.fill(0);
                 continue;

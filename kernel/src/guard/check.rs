@@ -83,6 +83,8 @@ pub fn first_touch(
 }
 
 /// Numbers of the first point of `cloud` that a sample touches, and of that sample.
+//= spec/time.md#time-04
+//# The cost of a verdict MUST grow at most linearly with the number of known points.
 #[must_use]
 pub fn first_blocked(
     tube: &Swept<'_>,
@@ -92,11 +94,17 @@ pub fn first_blocked(
 ) -> Option<(usize, usize)> {
     let mut previous: Option<&CloudPoint> = None;
     for (index, point) in cloud.iter().enumerate() {
+        //= spec/guard.md#guard-14
+        //# Two neighbouring returns that are closer to each other than the least width of the footprint MUST be
+        //# treated as the segment between them.
         let start = match previous {
             Some(before) if before.joined => before,
             _ => point,
         };
         previous = Some(point);
+        //= spec/guard.md#guard-17
+        //# A refused motion MUST NOT become accepted by adding a known point, by turning a known cell into an unknown
+        //# one or by enlarging an error bound.
         let extra = point.extra_mm.max(start.extra_mm);
         if !meets_bounds(&tube.bounds, i32::from(extra), start.point(), point.point()) {
             continue;
@@ -145,6 +153,10 @@ fn touched_sample(
         let Some(before) = excused_beyond else {
             return Some(number);
         };
+        //= spec/guard.md#guard-19
+        //# In a static world, a known point outside footprint and critical zone but inside the inflation of the place
+        //# where the robot rests or rested last MUST block every motion that brings the footprint nearer to it by
+        //# more than rounding.
         let excused = number < tube.nominal_from
             || not_nearer(footprint.segment_distance_squared(a, b), before);
         if !excused {

@@ -134,6 +134,8 @@ pub fn certify<const S: usize, const B: usize, const M: usize>(
         Err(refusal) => return Verdict::without_tube(refusal),
     };
     for (slice, cloud) in scene.memory.clouds().enumerate() {
+        //= spec/guard.md#guard-01
+        //# The guard MUST refuse a motion when a known point lies in one of the inflated samples of its tube.
         if let Some(touch) =
             check::first_touch(&tube, parameters.footprint, cloud, scene.excuse.as_ref())
         {
@@ -145,6 +147,9 @@ pub fn certify<const S: usize, const B: usize, const M: usize>(
             );
             let mut budget = touch.budget;
             budget.charge(scene.model.sensor_um, &stale, gap_mm, touch.point);
+            //= spec/guard.md#guard-20
+            //# Every verdict MUST carry the inflation of the deciding sample, term by term, and the point or cell
+            //# that decided.
             return Verdict::of(&tube, Some(Refusal::KnownPoint), Some(touch.point), budget);
         }
     }

@@ -90,11 +90,17 @@ impl Plan {
         } else if backward {
             Ok(Self::driving(dynamics, &hull.mirrored(), reaction_us, -1))
         } else {
+            //= spec/guard.md#guard-10
+            //# The guard MUST refuse a motion whose hull contains driving speeds of both signs, or turning on the
+            //# spot together with driving beyond what the residual turn rate covers.
             Err(Refusal::MixedMotion)
         }
     }
 
     /// Turning on the spot, both directions at once; speeds within the tolerance widen it.
+    //= spec/guard.md#guard-09
+    //# The tube of a turn on the spot MUST cover, in both directions, the angle turned in the hold time at the
+    //# largest turn rate of the hull plus the angle of braking from it.
     fn on_the_spot(dynamics: &Dynamics, hull: &Hull, reaction: u64) -> Self {
         let (slowest, fastest) = hull.speed_range();
         let creep = magnitude(slowest).max(magnitude(fastest));
@@ -176,9 +182,15 @@ impl Plan {
     }
 
     fn interval(dynamics: &Dynamics, hull: &Hull) -> CurvatureInterval {
+        //= spec/guard.md#guard-13
+        //# The curvature interval of an Ackermann tube MUST contain every wheel angle the steering can have at any
+        //# moment of the tube, widened by the curvature tolerance.
         if dynamics.steered {
             return hull.wheel_interval().widened(dynamics.curvature_tolerance);
         }
+        //= spec/guard.md#guard-11
+        //# Where the drive may ramp speed and turn rate separately, the tube MUST contain every trajectory in which
+        //# either of them reaches zero first.
         if dynamics.separate_ramps {
             // ω may come to rest before v does: the path may straighten.
             return hull
@@ -211,6 +223,9 @@ impl Plan {
     ///
     /// `dk (s²/2 + ρ s) + (tol_ω t_max + after_turn) (s + ρ) + constant`: convex and
     /// nondecreasing in `s`.
+    //= spec/guard.md#guard-08
+    //# The spread term of a sample MUST bound the distance of every footprint point from its nominal place at equal
+    //# arc length, for every curvature of the interval and every residual turn rate of the hull.
     #[must_use]
     pub fn spread(&self, path: u64, corner: u64) -> u64 {
         if self.path == 0 {
@@ -231,6 +246,9 @@ impl Plan {
     /// Latest time (µs) at which the robot can be at arc length `path` (µm) and still move.
     ///
     /// `T + min(t_brake, sqrt(2 s C) + tol_ω/β)`; see spec/model.md, "Latest time".
+    //= spec/guard.md#guard-07
+    //# The obstacle term of a point at a sample MUST be no less than the obstacle speed bound times the sum of the
+    //# point's age at the odometry stamp and the latest time at which the robot can be at that sample and still move.
     #[must_use]
     pub fn latest_at(&self, path: u64) -> u64 {
         let Some((slope, offset)) = self.late else {

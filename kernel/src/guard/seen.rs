@@ -153,6 +153,8 @@ impl Seen {
         let (column, row) = (cell.x >> FRACTION, cell.y >> FRACTION);
         match (u32::try_from(column), usize::try_from(row)) {
             (Ok(column), Ok(row)) if column < 128 => (self.known(row) >> column) & 1 == 1,
+            //= spec/memory.md#memory-10
+            //# Space outside the window of the memory MUST be unknown.
             _ => false,
         }
     }
@@ -196,6 +198,8 @@ impl Seen {
         if age < half {
             return;
         }
+        //= spec/memory.md#memory-08
+        //# Space not seen for longer than `age_max` MUST be unknown.
         let forgotten = age >= age_max.as_us();
         self.older = if forgotten { [0; CELLS] } else { self.recent };
         self.recent = [0; CELLS];

@@ -25,6 +25,9 @@ const SPOT_TURN_URAD: u64 = 34_906;
 /// Paths and reach (corner distance plus inflation) beyond these are refused, µm.
 const PATH_MAX_UM: u64 = 4_000_000;
 const REACH_MAX_UM: u64 = 3_000_000;
+//= spec/guard.md#guard-21
+//# Every rounding in the computation of a tube MUST enlarge the tube or be covered by the rounding term of its
+//# budget.
 /// Rounding of points and transforms, µm: 0.5 decoding + 0.71 storing + 1.06 body frame
 /// + 0.3 sample frame, rounded up.
 const ROUNDING_UM: u64 = 3_000;
@@ -198,10 +201,16 @@ impl Tube {
 
     fn drive(&mut self, parameters: &TubeParameters) -> Result<(), Refusal> {
         let plan = self.plan;
+        //= spec/guard.md#guard-18
+        //# The guard MUST refuse a motion whose tube needs more samples, a longer path or larger coordinates than it
+        //# can represent.
         if plan.path > PATH_MAX_UM {
             return Err(Refusal::TooLong);
         }
         let bend = u64::from(plan.curvature.unsigned_abs());
+        //= spec/guard.md#guard-05
+        //# The samples of a tube MUST begin at the start pose, end at the longest path to rest, and be spaced by
+        //# steps that turn by at most 5 degrees.
         let turn_steps = mul_micro_up(bend, plan.path).div_ceil(STEP_TURN_URAD);
         let steps = plan
             .path
@@ -293,6 +302,9 @@ impl Tube {
         let moving = mul_micro_up(parameters.obstacle_speed, latest);
         // Chords for arcs: s dθ²/24 ≤ s/2048 at 5 degrees a step.
         let rounding = add(ROUNDING_UM, path.div_ceil(2048));
+        //= spec/guard.md#guard-06
+        //# Every sample MUST be inflated by no less than the sum of sensor error, beam gap, odometry error, obstacle
+        //# motion, tracking error, sampling, spread and rounding as derived in the model.
         let inflation = [moving, rounding, self.tracking_um, self.sampling_um]
             .iter()
             .fold(spread, |sum, &term| add(sum, term));

@@ -32,6 +32,9 @@ pub fn entered(tube: &Tube, footprint: Rect, seen: &Seen, pose: LocalPose) -> Op
     let last = samples.len().saturating_sub(1);
     let stride = stride(tube);
     let mut rows: Rows = [0; CELLS];
+    //= spec/guard.md#guard-02
+    //# The guard MUST refuse a motion when one of its samples, inflated by every term but sensor and moving, contains
+    //# the centre of an unknown cell to which the nominal footprint comes nearer there than it is at the start.
     for (number, sample) in samples.iter().enumerate().skip(tube.nominal_from) {
         if number.checked_rem(stride) != Some(0) && number != last {
             continue;
@@ -180,3 +183,6 @@ impl<'a> Placement<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

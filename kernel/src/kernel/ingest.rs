@@ -24,6 +24,8 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     ) {
         let odometry = match reading {
             Reading::Absent => return,
+            //= spec/input.md#input-10
+            //# A malformed value MUST stop or brake the robot in the same tick.
             Reading::Malformed => return hazard.add(Reason::OdometryMalformed),
             Reading::Value(odometry) => *odometry,
         };
@@ -39,6 +41,8 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         if let Some(reason) = fault {
             hazard.add(reason);
         }
+        //= spec/memory.md#memory-11
+        //# A reset MUST forget what was known when the odometry is no longer continuous.
         if fault == Some(Reason::OdometryJump) {
             // Remembered places have lost their relation to the robot.
             self.memory.clear();
@@ -73,6 +77,9 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     }
 
     /// Whether the robot has rested for the rest time and is told to.
+    //= spec/latch.md#latch-09
+    //# The robot MUST count as resting only after its measured twist has been within the rest tolerances for the
+    //# whole rest time.
     pub(super) fn is_at_rest(&self) -> bool {
         let timing = &self.config.config().timing;
         let told = self.pipeline.last().twist == crate::input::Twist::default();
@@ -118,6 +125,9 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         if !watch::beams_usable(&setup, scan.beams) {
             return hazard.add(Reason::ScanMalformed);
         }
+        //= spec/zone.md#zone-01
+        //# A return of a new scan in the critical zone MUST start a protective stop in the tick that receives the
+        //# scan.
         hazard.add_if(
             watch::returns_from_zone(&setup, scan.beams, zone),
             Reason::CriticalZone,
@@ -226,7 +236,13 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
                 continue;
             }
             match channel.accepted {
+                //= spec/fresh.md#fresh-06
+                //# The kernel MUST stop while any configured scanner, or the odometry, has never delivered a usable
+                //# value.
                 None => hazard.add(Reason::ScanMissing),
+                //= spec/fresh.md#fresh-01
+                //# The kernel MUST stop while the newest usable scan of any configured scanner is older than
+                //# `scan_age_max`.
                 Some(stamp) => hazard.add_if(
                     watch::is_stale(stamp, now, timing.scan_age_max),
                     Reason::ScanStale,
@@ -237,6 +253,8 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         let Some(newest) = self.track.newest() else {
             return hazard.add(Reason::OdometryMissing);
         };
+        //= spec/fresh.md#fresh-02
+        //# The kernel MUST stop while the newest usable odometry is older than `odometry_age_max`.
         hazard.add_if(
             watch::is_stale(newest.stamp, now, timing.odometry_age_max),
             Reason::OdometryStale,
@@ -245,6 +263,9 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             .stamp
             .minus(timing.tracking_window)
             .minus(timing.actuation_latency);
+        //= spec/input.md#input-13
+        //# The kernel MUST stop when the measured twist has left the hull of the recent set points by more than the
+        //# follow tolerances for the tracking window.
         hazard.add_if(
             !self
                 .pipeline
@@ -255,6 +276,9 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     }
 
     /// The critical zone in the body frame, mm, outward.
+    //= spec/zone.md#zone-02
+    //# The critical zone MUST be the footprint grown by the front margin ahead of the front edge and by the side
+    //# margin on every other side.
     fn zone(&self) -> Rect {
         let config = self.config.config();
         let um = |length: crate::units::Length| magnitude(length.as_um());
@@ -296,6 +320,8 @@ impl<const B: usize> Channel<B> {
         let turned = odometer
             .turned_urad
             .saturating_sub(self.fingerprint_since.turned_urad);
+        //= spec/fresh.md#fresh-07
+        //# The kernel MUST stop when scans repeat bit by bit although the robot moves.
         self.frozen |= travelled > FROZEN_TRAVEL_UM || turned > FROZEN_TURN_URAD;
     }
 

@@ -103,6 +103,8 @@ struct Tick {
 struct Worst(Reason);
 
 impl Worst {
+    //= spec/latch.md#latch-08
+    //# When several causes apply in one tick, the most restrictive action MUST win.
     fn add(&mut self, reason: Reason) {
         self.0 = self.0.max(reason);
     }
@@ -121,6 +123,8 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     /// The first rule of the configuration that is broken.
     pub fn new(config: Config<S>) -> Result<Self, ConfigError> {
         Ok(Self {
+            //= spec/input.md#input-14
+            //# A configuration that contains an impossible combination MUST be refused before the first tick.
             config: KernelConfig::new(config, B)?,
             track: Track::default(),
             memory: Memory::default(),
@@ -146,6 +150,10 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     /// O(scans × (beams + remembered) + speed factors × points × samples); no allocation.
     /// # Source
     /// spec/model.md; spec/ GUARD, BRAKE, LIMIT, ZONE, FRESH, SILENT, LATCH, INPUT, MEMORY.
+    //= spec/time.md#time-01
+    //# The number of loop iterations of a tick MUST be bounded by the capacities of the kernel, whatever the input.
+    //= spec/time.md#time-05
+    //# The kernel MUST NOT read a clock.
     pub fn step(&mut self, inputs: &Inputs<'_>, now: Instant) -> Decision {
         let tick = self.perceive(inputs, now);
         self.decide(&tick, Self::drive)
@@ -156,6 +164,8 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         let mut hazard = Worst(Reason::None);
         // The caller's clock, even if it ran backwards: nobody may hold a set point for longer.
         let timing = &self.config.config().timing;
+        //= spec/silent.md#silent-01
+        //# Every decision MUST expire no later than one control period plus jitter after its tick.
         let expires = now.plus(timing.period).plus(timing.jitter);
         let (now, elapsed) = self.tick(now, &mut hazard);
         self.take_odometry(&inputs.odometry, now, &mut hazard);
@@ -191,6 +201,8 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         };
         match now.since(last) {
             Some(elapsed) if elapsed > Duration::ZERO => {
+                //= spec/silent.md#silent-02
+                //# A tick later than control period plus jitter after the one before MUST start a protective stop.
                 hazard.add_if(
                     elapsed > timing.period.plus(timing.jitter),
                     Reason::TickLate,
@@ -199,6 +211,8 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
                 (now, elapsed)
             }
             _ => {
+                //= spec/silent.md#silent-03
+                //# A tick whose `now` is not later than the one before MUST start a protective stop.
                 hazard.add(Reason::TimeReversed);
                 (last, timing.period)
             }
@@ -231,6 +245,10 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     /// only while motion is allowed.
     fn decide(&mut self, tick: &Tick, drive: impl FnOnce(&mut Self, &Tick) -> Outcome) -> Decision {
         let (hazard, elapsed) = (tick.hazard, tick.elapsed);
+        //= spec/silent.md#silent-04
+        //# The kernel MUST answer every tick with a set point, whether or not a command arrived.
+        //= spec/latch.md#latch-07
+        //# The set point MUST NOT grow in magnitude while a stop is active.
         let outcome = match self.stop.mode {
             Mode::Latched => self.braking(
                 Action::EmergencyStop,

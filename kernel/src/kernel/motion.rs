@@ -25,10 +25,16 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
         let config = self.config.config();
         let timing = &config.timing;
         let last = self.pipeline.last();
+        //= spec/brake.md#brake-05
+        //# A braking set point MUST ask for no more speed and no more turn rate than a ramp at the sure
+        //# decelerations, begun at the first braking tick, has left at the expiry of the decision.
         let vertex = if self.is_braking {
             window::braked(config, last, elapsed)
         } else {
             let start = match self.track.newest() {
+                //= spec/brake.md#brake-06
+                //# A braking set point MUST NOT exceed in magnitude the measured twist plus its tolerance, nor the
+                //# set point before it.
                 Some(odometry) => window::no_faster(config, last, odometry.twist),
                 None => last,
             };
@@ -55,9 +61,13 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
             return Err(fault);
         }
         let command = self.command.ok_or(Reason::CommandMissing)?;
+        //= spec/latch.md#latch-06
+        //# After a release the kernel MUST NOT execute a command stamped at or before the release.
         if command.stamp <= self.stop.released {
             return Err(Reason::CommandMissing);
         }
+        //= spec/fresh.md#fresh-03
+        //# The kernel MUST brake while the newest usable command is older than `command_age_max`.
         if is_stale(
             command.stamp,
             now,
@@ -69,6 +79,15 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     }
 
     /// Certifies the fastest motion of the list towards the desired one, or brakes.
+    //= spec/brake.md#brake-01
+    //# When no motion is accepted, the kernel MUST send a braking set point in the same tick.
+    //= spec/brake.md#brake-02
+    //# At every tick the robot MUST be at rest or inside a tube that was accepted at an earlier tick and not yet left
+    //# by time.
+    //= spec/limit.md#limit-06
+    //# When limits and dynamic window leave no admissible set point, the kernel MUST brake.
+    //= spec/limit.md#limit-07
+    //# `limit` MUST return the fastest motion of its fixed, descending list of speed factors that the guard accepts.
     pub(super) fn drive(&mut self, tick: &Tick) -> Outcome {
         let (now, elapsed) = (tick.now, tick.elapsed);
         let desired = self
@@ -153,6 +172,9 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     }
 
     /// The motions that may be executed from the odometry stamp on: measured, in flight, new.
+    //= spec/guard.md#guard-03
+    //# The hull of a motion MUST contain the measured twist, every set point sent after the odometry stamp minus the
+    //# actuation latency, the last set point sent before that moment, and the set point to be sent.
     fn hull(&self, odometry: &Odometry, candidate: Vertex) -> Hull {
         let mut hull = Hull::default();
         hull.push(Vertex {

@@ -1,17 +1,16 @@
 //! After a correction: who was contradicted, whether the pose is in doubt, what is new.
 
 use super::POSITION_MAX_M;
+use super::anchor::Anchor;
 use super::correct::Moved;
 use super::ekf::{Learned, MarkerEkf};
-use super::linear::{IDENTITY, Matrix, ZERO, sandwich, sum};
+use super::linear::{IDENTITY, Matrix, ZERO, sandwich, sum, times};
 use super::model;
 use super::pose::Pose2;
 use super::recovery::{Bearing, Claim, Takeover};
-use super::sighting::{FrameReport, Sighting, Verdict};
+use super::sighting::{FrameReport, NOISE_MIN, Record, Sighting, Verdict};
 use crate::time::{Duration, Instant};
 
-/// Variance of a heading that was never seen, rad²: any.
-const HEADING_UNKNOWN_RAD2: f64 = 10.0;
 /// A marker seen less often than this is tentative.
 const TENTATIVE: u16 = 3;
 /// A tentative marker makes room for a new one when it was not seen for this long.
@@ -22,25 +21,36 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
     pub(super) fn account(&mut self, moved: &Moved<'_>, report: &mut FrameReport) {
         let stamp = moved.frame.stamp;
         let fused = report.count(Verdict::Fused) > 0;
-        let trusted = fused || !self.recovery.in_doubt(stamp);
+        // Others fit now, or did when something was seen last.
+        let trusted = fused || self.recovery.is_clear();
+        let doubts = |r: &Record| r.verdict == Verdict::Gated && !self.is_tentative(r.id);
         if fused {
             self.recovery.clear();
-        } else if report.count(Verdict::Gated) > 0 {
+        } else if report.records().any(doubts) {
             self.recovery.rejected(stamp, self.rules.lost_after);
         }
         for (index, sighting) in moved.sightings() {
-            let verdict = report.record(index).map(|record| record.verdict);
-            match verdict {
+            match report.record(index).map(|record| record.verdict) {
                 Some(Verdict::Fused) => self.confirm(sighting, stamp),
-                Some(Verdict::Gated) if trusted && self.contradict(sighting.id) => {
-                    report.set_verdict(index, Verdict::Removed);
-                }
-                Some(Verdict::Gated) if !fused && !report.relocated => {
-                    report.relocated = self.challenge(moved, sighting);
+                // Of several sightings with one id any may be the wrong one: none of them speaks.
+                Some(Verdict::Gated) if is_alone(report, sighting.id) => {
+                    let tentative = self.is_tentative(sighting.id);
+                    if (trusted || tentative) && self.contradict(sighting.id) {
+                        report.set_verdict(index, Verdict::Removed);
+                    } else if !fused && !tentative && !report.relocated {
+                        report.relocated = self.challenge(moved, sighting);
+                    }
                 }
                 _ => {}
             }
         }
+    }
+
+    /// Whether a marker is in the state, but was seen too seldom to say anything about the robot.
+    fn is_tentative(&self, id: u16) -> bool {
+        let slot = self.known(id).and_then(|(_, slot)| slot);
+        let marker = slot.and_then(|slot| self.markers().get(slot));
+        marker.is_some_and(|marker| marker.sightings < TENTATIVE)
     }
 
     fn learned_mut(&mut self, id: u16) -> Option<&mut Learned> {
@@ -57,7 +67,7 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
         }
     }
 
-    /// Counts a contradiction; true if it was one too many and the marker is gone.
+    /// Counts a contradiction, at most one per frame; true if it was one too many and the marker is gone.
     fn contradict(&mut self, id: u16) -> bool {
         let limit = self.rules.contradictions;
         let Some(marker) = self.learned_mut(id) else {
@@ -66,6 +76,9 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
         marker.contradictions = marker.contradictions.saturating_add(1);
         let tentative = marker.sightings < TENTATIVE;
         let limit = if tentative { limit.min(3) } else { limit };
+        //= spec/ekf.md#ekf-12
+        //# A marker in the state MUST be taken out when its sightings are rejected repeatedly while those of others
+        //# fit.
         let gone = marker.contradictions >= limit;
         if let (true, Some((_, Some(slot)))) = (gone, self.known(id)) {
             self.remove(slot);
@@ -81,7 +94,7 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
         let oriented = slot
             .and_then(|slot| self.markers().get(slot))
             .is_none_or(|m| m.oriented);
-        let spread = slot.map_or(ZERO, |slot| self.covariance.marker_covariance(slot));
+        let spread = slot.map_or(ZERO, |slot| self.marker_covariance(slot));
         if sighting.heading_rad.is_none() || !oriented {
             return self.challenge_by_position(moved, sighting, &marker, &spread);
         }
@@ -97,8 +110,11 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
             None => return false,
             Some(Takeover::Mean(pose, covariance)) => self.put(pose, &covariance),
             Some(Takeover::Last) => {
+                let error = slot.map_or(IDENTITY, |slot| self.marker_error(slot));
+                let by_marker = times(&jacobians.marker, &error);
                 self.robot = pose;
-                self.covariance.tie_robot(slot, &jacobians.marker, &noise);
+                self.anchor = Anchor::at(&pose);
+                self.covariance.tie_robot(slot, &by_marker, &noise);
             }
         }
         self.recovery.clear();
@@ -141,6 +157,7 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
     fn put(&mut self, pose: Pose2, covariance: &Matrix) {
         if pose.is_within(POSITION_MAX_M) {
             self.robot = pose;
+            self.anchor = Anchor::at(&pose);
             self.covariance.tie_robot(None, &IDENTITY, covariance);
         }
     }
@@ -176,17 +193,23 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
         let oriented = sighting.heading_rad.is_some();
         let mut noise = moved.noise(sighting);
         if !oriented {
-            noise[2][2] = HEADING_UNKNOWN_RAD2;
+            // Its heading is an axis that hangs in the map and turns with it.
+            noise[2][2] = NOISE_MIN;
         }
         let jacobians = model::placed(&self.robot, &seen);
+        let by_robot = times(&jacobians.robot, &self.anchor.error_of(&self.robot));
         let noise = sandwich(&jacobians.marker, &noise);
-        let Some(slot) = self.covariance.append(&jacobians.robot, &noise) else {
+        //= spec/ekf.md#ekf-03
+        //# A corrected state and its covariance MUST equal those of the same filter with dense matrices, which keeps
+        //# every cross-covariance, up to rounding.
+        let Some(slot) = self.covariance.append(&by_robot, &noise) else {
             return false;
         };
         if let Some(place) = self.markers.get_mut(slot) {
             *place = Learned {
                 id: sighting.id,
                 pose,
+                anchor: Anchor::at(&pose),
                 oriented,
                 sightings: 1,
                 contradictions: 0,
@@ -198,6 +221,9 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
     }
 
     /// When full: the tentative marker that was not seen for longest goes, if there is one.
+    //= spec/ekf.md#ekf-11
+    //# When the state is full, a new marker MUST be refused unless a tentative one that was not seen for five seconds
+    //# can make room.
     fn make_room(&mut self, now: Instant) {
         if self.covariance.len() < N {
             return;
@@ -211,4 +237,12 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
             self.remove(slot);
         }
     }
+}
+
+/// Whether an id was read once in a frame, malformed sightings aside.
+fn is_alone(report: &FrameReport, id: u16) -> bool {
+    let mut same = report
+        .records()
+        .filter(|record| record.id == id && record.verdict != Verdict::Malformed);
+    same.next().is_some() && same.next().is_none()
 }

@@ -1,8 +1,9 @@
 //! One frame's correction: judge all of its sightings at the same prior, absorb those that
 //! fit, learn new markers, and keep account of what did not fit.
 
+use super::POSITION_MAX_M;
 use super::ekf::MarkerEkf;
-use super::linear::{Ldl, Matrix, Vector, sandwich, subtract, sum};
+use super::linear::{Ldl, Matrix, Vector, ZERO, sandwich, subtract, sum, times};
 use super::model;
 use super::pose::{Pose2, wrap};
 use super::sighting::{FRAME_MAX, Frame, FrameReport, FrameVerdict, Record, Sighting, Verdict};
@@ -45,11 +46,15 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
         if verdict != FrameVerdict::Used {
             return report;
         }
-        let moved = Moved {
-            frame,
-            carry: self.cycle.carry(frame.stamp),
+        let Some(carry) = self.cycle.carry(frame.stamp) else {
+            return report;
         };
+        let moved = Moved { frame, carry };
+        self.turn_free(&moved);
         let mut judged = [None; FRAME_MAX];
+        //= spec/ekf.md#ekf-06
+        //# The sightings of one frame MUST be judged and linearised at the same prior, so that their order is
+        //# irrelevant.
         for ((index, sighting), place) in moved.sightings().zip(&mut judged) {
             let (record, fits) = self.judge(&moved, sighting);
             report.set(index, record);
@@ -62,12 +67,36 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
         self.cycle.corrected(frame);
         self.absorb(&judged);
         self.account(&moved, &mut report);
+        if !self.robot.is_within(POSITION_MAX_M) {
+            self.recovery.strayed(frame.stamp);
+        }
         self.learn(&moved, &mut report);
         report
     }
 
+    /// Landmarks without a heading that show one now, where they are expected: it may be any.
+    fn turn_free(&mut self, moved: &Moved<'_>) {
+        for (_, sighting) in moved.sightings() {
+            let marker = self.known(sighting.id).and_then(|(_, slot)| slot);
+            let bare = |slot: &usize| self.markers().get(*slot).is_some_and(|m| !m.oriented);
+            let (Some(slot), Some(_)) = (marker.filter(bare), sighting.heading_rad) else {
+                continue;
+            };
+            let place = Sighting {
+                heading_rad: None,
+                ..*sighting
+            };
+            if let (true, (_, Some(_))) = (sighting.is_usable(), self.judge(moved, &place)) {
+                self.free_heading(slot);
+            }
+        }
+    }
+
     /// Compares one sighting with the prior; what is returned beside the record may be fused.
     fn judge(&self, moved: &Moved<'_>, sighting: &Sighting) -> (Record, Option<Judged>) {
+        //= spec/ekf.md#ekf-04
+        //# A sighting or an odometry sample that is not finite, out of range or without a proper noise MUST be
+        //# recorded as malformed and leave the state as it is.
         if !sighting.is_usable() {
             return (Record::unjudged(sighting, Verdict::Malformed), None);
         }
@@ -81,7 +110,7 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
         let turn = if oriented { wrap(apart[2]) } else { 0.0 };
         let innovation = [apart[0], apart[1], turn];
         let noise = moved.noise(sighting);
-        let rows = rows(&self.robot, &marker, slot.is_some(), oriented);
+        let rows = self.rows(&marker, slot, oriented);
         let covariance = sum(&self.covariance.spread(slot, &rows), &noise);
         let nis = Ldl::of(&covariance).distance(innovation);
         let gate = if oriented {
@@ -90,6 +119,8 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
             self.rules.gate_position
         };
         let judged = Judged::new(slot, rows, innovation, &noise, oriented);
+        //= spec/ekf.md#ekf-05
+        //# A sighting whose NIS exceeds the gate MUST NOT change the state.
         let (verdict, fits) = if nis <= gate {
             (Verdict::Fused, Some(judged))
         } else {
@@ -99,6 +130,9 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
         if !oriented {
             covariance[2][2] = 0.0;
         }
+        //= spec/ekf.md#ekf-13
+        //# Every sighting of a used frame MUST leave a record with its innovation, the innovation's covariance, its
+        //# NIS and the verdict.
         let record = Record::judged(sighting, innovation, covariance, nis, verdict);
         (record, fits)
     }
@@ -115,12 +149,32 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
                 correction.add_scaled(&gain, rest);
             }
         }
-        self.robot = self.robot.corrected(correction.robot);
+        self.robot = self.anchor.corrected(&self.robot, correction.robot);
         let len = self.covariance.len();
         let markers = self.markers.iter_mut().zip(&correction.markers);
         for (marker, correction) in markers.take(len) {
-            marker.pose = marker.pose.corrected(*correction);
+            marker.pose = marker.anchor.corrected(&marker.pose, *correction);
         }
+    }
+
+    /// The rows of H for one sighting; zero where nothing is measured or nothing estimated.
+    fn rows(&self, marker: &Pose2, slot: Option<usize>, oriented: bool) -> [Row; 3] {
+        let jacobians = model::sighting(&self.robot, marker);
+        let by_robot = times(&jacobians.robot, &self.anchor.error_of(&self.robot));
+        let by_marker = slot.map(|slot| times(&jacobians.marker, &self.marker_error(slot)));
+        let blank = Row {
+            robot: [0.0; 3],
+            marker: [0.0; 3],
+            variance: 0.0,
+        };
+        let mut rows = [blank; 3];
+        let measured = if oriented { 3 } else { 2 };
+        let blocks = by_robot.iter().zip(by_marker.unwrap_or(ZERO));
+        for (row, (robot, marker)) in rows.iter_mut().zip(blocks).take(measured) {
+            row.robot = *robot;
+            row.marker = marker;
+        }
+        rows
     }
 }
 
@@ -148,26 +202,6 @@ impl Judged {
             used: if oriented { 3 } else { 2 },
         }
     }
-}
-
-/// The rows of H for one sighting; zero where nothing is measured or nothing estimated.
-fn rows(robot: &Pose2, marker: &Pose2, learned: bool, oriented: bool) -> [Row; 3] {
-    let jacobians = model::sighting(robot, marker);
-    let blank = Row {
-        robot: [0.0; 3],
-        marker: [0.0; 3],
-        variance: 0.0,
-    };
-    let mut rows = [blank; 3];
-    let measured = if oriented { 3 } else { 2 };
-    let blocks = jacobians.robot.iter().zip(jacobians.marker);
-    for (row, (robot, marker)) in rows.iter_mut().zip(blocks).take(measured) {
-        row.robot = *robot;
-        if learned {
-            row.marker = marker;
-        }
-    }
-    rows
 }
 
 /// Of sightings with the same id at most one can be right: the only one inside the gate.

@@ -1,9 +1,10 @@
 //! The filter: the robot and the markers it has met, in one state.
 
+use super::anchor::Anchor;
 use super::cycle::Cycle;
-use super::factor::{Factor, close_gap};
+use super::factor::{Factor, HEADING_UNKNOWN_RAD2, close_gap};
 use super::index::{Index, Place};
-use super::linear::{Matrix, diagonal, sandwich};
+use super::linear::{IDENTITY, Matrix, diagonal, sandwich, times};
 use super::model;
 use super::pose::{Increment, Pose2};
 use super::recovery::{Health, Recovery};
@@ -19,12 +20,14 @@ pub const INCREMENT_MAX_RAD: f64 = core::f64::consts::TAU;
 
 /// EKF SLAM on markers: at most `N` in the state, `M` in the map given beforehand.
 ///
-/// About `72 N² + 24 M` bytes and 2 kB: box it or place it in a `static` where the stack is
+/// About `72 N² + 144 N + 24 M` bytes and 4 kB: box it or place it in a `static` where the stack is
 /// small. Nothing here needs a stack frame that grows faster than `N`.
 #[derive(Clone, Debug)]
 pub struct MarkerEkf<const N: usize, const M: usize> {
     pub(super) rules: FilterRules,
     pub(super) robot: Pose2,
+    pub(super) anchor: Anchor,
+    /// Of the errors as the anchors count them.
     pub(super) covariance: Factor<N>,
     /// As many as `covariance` has, in the same order.
     pub(super) markers: [Learned; N],
@@ -38,6 +41,7 @@ pub struct MarkerEkf<const N: usize, const M: usize> {
 pub(super) struct Learned {
     pub(super) id: u16,
     pub(super) pose: Pose2,
+    pub(super) anchor: Anchor,
     /// Whether its heading was ever seen.
     pub(super) oriented: bool,
     /// Sightings fused, the first included; saturates.
@@ -62,6 +66,7 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
         Ok(Self {
             rules,
             robot,
+            anchor: Anchor::at(&robot),
             covariance: Factor::new(&start_covariance(variances)?),
             markers: [Learned::default(); N],
             index: Index::new(),
@@ -86,6 +91,7 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
         let robot = checked(&pose)?;
         let covariance = start_covariance(variances)?;
         self.robot = robot;
+        self.anchor = Anchor::at(&robot);
         self.covariance.tie_robot(None, &covariance, &covariance);
         self.recovery.clear();
         Ok(())
@@ -114,6 +120,27 @@ impl<const N: usize, const M: usize> MarkerEkf<N, M> {
             Place::Unknown => None,
             Place::Mapped(at) => Some((*self.index.mapped(at)?, None)),
             Place::Learned(slot) => Some((self.markers().get(slot)?.pose, Some(slot))),
+        }
+    }
+
+    /// Covariance of a marker's [x, y, heading].
+    pub(super) fn marker_covariance(&self, slot: usize) -> Matrix {
+        let counted = self.covariance.marker_covariance(slot);
+        sandwich(&self.marker_error(slot), &counted)
+    }
+
+    /// The derivative of a marker's [x, y, heading] by its error as it is counted.
+    pub(super) fn marker_error(&self, slot: usize) -> Matrix {
+        let marker = self.markers().get(slot);
+        marker.map_or(IDENTITY, |marker| marker.anchor.error_of(&marker.pose))
+    }
+
+    /// The heading of a marker may be any; its place stays as it is.
+    pub(super) fn free_heading(&mut self, slot: usize) {
+        if let Some(marker) = self.markers.get_mut(slot) {
+            marker.oriented = true;
+            let turn = marker.anchor.counted(&marker.pose).map(|row| row[2]);
+            self.covariance.loosen(slot, turn, HEADING_UNKNOWN_RAD2);
         }
     }
 
@@ -147,6 +174,8 @@ impl<const N: usize, const M: usize> MarkerFilter for MarkerEkf<N, M> {
         }
         let noise = self.rules.odometry.of(increment);
         let spread = model::motion_noise(&self.robot, increment);
+        self.anchor.follow(&self.robot, &after);
+        let spread = times(&self.anchor.counted(&after), &spread);
         self.covariance
             .moved(&jacobian, &sandwich(&spread, &diagonal(noise)));
         self.robot = after;
@@ -166,7 +195,8 @@ impl<const N: usize, const M: usize> MarkerFilter for MarkerEkf<N, M> {
     }
 
     fn pose_covariance(&self) -> Matrix {
-        self.covariance.robot_covariance()
+        let error = self.anchor.error_of(&self.robot);
+        sandwich(&error, &self.covariance.robot_covariance())
     }
 
     fn marker(&self, id: u16) -> Option<MarkerEstimate> {
@@ -174,9 +204,7 @@ impl<const N: usize, const M: usize> MarkerFilter for MarkerEkf<N, M> {
         let marker = slot.and_then(|slot| self.markers().get(slot));
         Some(MarkerEstimate {
             pose,
-            covariance: slot.map_or(super::linear::ZERO, |slot| {
-                self.covariance.marker_covariance(slot)
-            }),
+            covariance: slot.map_or(super::linear::ZERO, |slot| self.marker_covariance(slot)),
             oriented: marker.is_none_or(|marker| marker.oriented),
             sightings: marker.map_or(0, |marker| marker.sightings),
         })

@@ -22,8 +22,10 @@ mod peek;
 use super::rotation::{Fold, Step};
 use super::state::{Row, StateVector};
 
-/// Largest variance of the robot's own part, m² or rad²: beyond it nothing is known anyway.
-const VARIANCE_MAX: f64 = 1e8;
+/// Largest variances of the robot's pose, m² and rad²: beyond them nothing is known anyway.
+pub(super) const VARIANCE_MAX: Vector = [1e8, 1e8, HEADING_UNKNOWN_RAD2];
+/// Variance of a heading that may be any, rad².
+pub(super) const HEADING_UNKNOWN_RAD2: f64 = 10.0;
 
 /// `L` and `D` for up to `N` markers of three numbers each, and the robot.
 #[derive(Clone, Debug)]
@@ -67,7 +69,38 @@ impl<const N: usize> Factor<N> {
         }
         let own = sandwich(jacobian, &self.robot.matrix());
         self.robot = Ldl::of(&sum(&own, noise));
-        self.robot.pivots = self.robot.pivots.map(|d| d.min(VARIANCE_MAX));
+        //= spec/ekf.md#ekf-02
+        //# After any sequence of inputs, valid or not, the state MUST be finite and its covariance finite, symmetric
+        //# and positive.
+        self.bound_robot();
+    }
+
+    /// Where the robot's variances are too large they are made smaller, and all that is shared
+    /// with the markers in proportion: `S P S` with a diagonal `S` is as positive as `P`.
+    fn bound_robot(&mut self) {
+        let mut own = self.robot.matrix();
+        let mut variances = [own[0][0], own[1][1], own[2][2]];
+        let rows = self.robot_rows.iter().zip(&self.pivots).take(self.len);
+        for (row, pivot) in rows.flat_map(|(rows, pivots)| rows.iter().zip(pivots)) {
+            for (variance, entry) in variances.iter_mut().zip(row) {
+                *variance += entry * entry * pivot;
+            }
+        }
+        let mut pairs = variances.iter().zip(&VARIANCE_MAX);
+        if pairs.all(|(variance, most)| variance <= most) {
+            return;
+        }
+        let mut scale = [1.0; 3];
+        for ((scale, variance), most) in scale.iter_mut().zip(variances).zip(VARIANCE_MAX) {
+            *scale = libm::sqrt(most / variance.max(most));
+        }
+        own = sandwich(&diagonal(scale), &own);
+        self.robot = Ldl::of(&own);
+        for row in self.robot_rows.iter_mut().take(self.len).flatten() {
+            for (entry, scale) in row.iter_mut().zip(scale) {
+                *entry *= scale;
+            }
+        }
     }
 
     /// `H P Hᵀ` for three rows, their noise not included.
@@ -231,7 +264,8 @@ impl<const N: usize> Factor<N> {
         };
         let pivots = self.pivots.get(slot).copied().unwrap_or_default();
         for ((markers, robot), weight) in columns.into_iter().zip(robot).zip(pivots) {
-            self.fold(slot, StateVector { robot, markers }, weight);
+            let first = slot.saturating_add(1);
+            self.fold(first, StateVector { robot, markers }, weight);
         }
         close_gap(&mut self.pivots, slot);
         close_gap(&mut self.robot_rows, slot);
@@ -242,9 +276,19 @@ impl<const N: usize> Factor<N> {
         self.len = self.len.saturating_sub(1);
     }
 
-    /// Adds `weight` times the square of `v` to everything behind `slot`.
-    fn fold(&mut self, slot: usize, mut v: StateVector<N>, mut weight: f64) {
-        let first = slot.saturating_add(1);
+    /// Adds an error of its own to one marker: `weight` times the square of `v`.
+    /// # Bound
+    /// O(markers²).
+    pub(super) fn loosen(&mut self, slot: usize, v: Vector, weight: f64) {
+        let mut whole = StateVector::ZERO;
+        if let Some(marker) = whole.markers.get_mut(slot) {
+            *marker = v;
+            self.fold(slot, whole, weight);
+        }
+    }
+
+    /// Adds `weight` times the square of `v` to everything from marker `first` on.
+    fn fold(&mut self, first: usize, mut v: StateVector<N>, mut weight: f64) {
         let end = self.len.saturating_mul(3);
         let markers = self.columns.iter_mut().zip(&mut self.robot_rows);
         let markers = markers.zip(&mut self.pivots).enumerate().take(self.len);

@@ -1,7 +1,8 @@
 //! Three by three blocks in plain `f64`, with indices known at compile time.
 //!
 //! It refuses to divide by a pivot below [`PIVOT_MIN`]: it takes the bound instead, so that a
-//! factor has a positive diagonal whatever it is made from.
+//! factor has a positive diagonal whatever it is made from. Nor does it believe in correlations
+//! beyond one, which rounding makes: no variance of a factor exceeds the one it was made from.
 
 /// A column [x, y, heading].
 pub(super) type Vector = [f64; 3];
@@ -76,6 +77,16 @@ pub(super) fn diagonal(v: Vector) -> Matrix {
     [[v[0], 0.0, 0.0], [0.0, v[1], 0.0], [0.0, 0.0, v[2]]]
 }
 
+/// `covariance / pivot`, but at most what explains the whole `variance`.
+fn slope(covariance: f64, pivot: f64, variance: f64) -> f64 {
+    let slope = covariance / pivot;
+    if slope * slope * pivot <= variance {
+        slope
+    } else {
+        libm::copysign(libm::sqrt(variance.max(0.0) / pivot), covariance)
+    }
+}
+
 /// `L D Lᵀ` with a unit lower triangle `L` and a positive diagonal `D`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ldl {
@@ -89,11 +100,12 @@ impl Ldl {
     /// Factor of a symmetric matrix, of which only the lower triangle is read.
     pub(super) fn of(m: &Matrix) -> Self {
         let d0 = m[0][0].max(PIVOT_MIN);
-        let l10 = m[1][0] / d0;
-        let l20 = m[2][0] / d0;
+        let l10 = slope(m[1][0], d0, m[1][1]);
+        let l20 = slope(m[2][0], d0, m[2][2]);
         let d1 = (m[1][1] - l10 * l10 * d0).max(PIVOT_MIN);
-        let l21 = (m[2][1] - l20 * l10 * d0) / d1;
-        let d2 = (m[2][2] - l20 * l20 * d0 - l21 * l21 * d1).max(PIVOT_MIN);
+        let rest = m[2][2] - l20 * l20 * d0;
+        let l21 = slope(m[2][1] - l20 * l10 * d0, d1, rest);
+        let d2 = (rest - l21 * l21 * d1).max(PIVOT_MIN);
         Self {
             below: [l10, l20, l21],
             pivots: [d0, d1, d2],

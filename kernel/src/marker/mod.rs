@@ -11,7 +11,8 @@
 //! worse and a motion never unsafe.
 //!
 //! Invariants (tested): the state is finite, headings lie in (−π, π]; the covariance is
-//! symmetric and positive because it is stored as a factor (see `factor.rs`); nothing
+//! symmetric and positive because it is stored as a factor (see `factor.rs`); sightings of
+//! learned markers do not narrow the pose of the map as a whole (see `anchor.rs`); nothing
 //! allocates or panics for any input; a correction costs O(markers²), a prediction O(markers).
 //!
 //! Frames: poses in the frame of the map, sightings and increments in the robot frame
@@ -21,6 +22,7 @@
 //! Loh 2018, chapter 3, with 3.9, 3.10 and 3.19 corrected.
 
 mod account;
+mod anchor;
 mod correct;
 mod cycle;
 mod ekf;
@@ -38,7 +40,7 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-pub use cycle::{CAMERAS, Cycle};
+pub use cycle::{CAMERAS, Cycle, MOTIONS};
 pub use ekf::{INCREMENT_MAX_M, INCREMENT_MAX_RAD, MarkerEkf};
 pub use pose::{Increment, Pose2, wrap};
 pub use projection::{CornerRules, Isometry3, ProjectionRefused, project};

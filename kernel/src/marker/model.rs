@@ -39,6 +39,8 @@ pub(super) fn motion_noise(robot: &Pose2, increment: &Increment) -> Matrix {
 }
 
 /// Derivatives of `robot.sees(marker)` (Loh 3.10 corrected, 3.11).
+//= spec/ekf.md#ekf-01
+//# Every derivative used MUST be the derivative of the function it belongs to.
 pub(super) fn sighting(robot: &Pose2, marker: &Pose2) -> Jacobians {
     let (sin, cos) = sin_cos(robot.heading_rad);
     let (dx, dy) = (marker.x_m - robot.x_m, marker.y_m - robot.y_m);

@@ -110,6 +110,8 @@ pub fn project(camera: &Isometry3, marker: &Isometry3) -> Result<Pose2, Projecti
     }
     let seen = camera.then(marker);
     let normal = apply(&seen.rotation, [0.0, 0.0, 1.0]);
+    //= spec/ekf.md#ekf-14
+    //# A marker whose normal is within 10 degrees of the vertical MUST NOT be projected to the plane.
     if libm::hypot(normal[0], normal[1]) < SHADOW_MIN {
         return Err(ProjectionRefused::FloorParallel);
     }

@@ -15,8 +15,8 @@ use crate::time::{Duration, Instant};
 pub const SUPPORT: u8 = 8;
 /// Rejections before a run of them counts; below it there may be single outliers.
 const RUN_MIN: u16 = 5;
-/// A run of rejections ends when none arrives for this long.
-const PAUSE: Duration = Duration::from_ms(500);
+/// New markers wait for this long after a rejection.
+const DOUBT: Duration = Duration::from_ms(500);
 
 /// Whether the pose is to be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +24,8 @@ const PAUSE: Duration = Duration::from_ms(500);
 pub enum Health {
     /// Sightings and odometry agree, or there are none.
     Tracking,
-    /// Every sighting of a known marker has been rejected since this moment.
+    /// Every sighting of a known marker has been rejected since this moment, or the pose has left
+    /// the filter's range.
     Lost(Instant),
 }
 
@@ -138,12 +139,24 @@ impl Recovery {
     /// Whether the pose is in doubt: known markers are being rejected, or were until just now.
     pub(super) fn in_doubt(&self, now: Instant) -> bool {
         let since = self.last.map(|last| now.since(last).unwrap_or_default());
-        self.lost || since.is_some_and(|since| since <= PAUSE)
+        self.lost || since.is_some_and(|since| since <= DOUBT)
+    }
+
+    /// Whether nothing was rejected since the last sighting that fitted.
+    pub(super) const fn is_clear(&self) -> bool {
+        self.first.is_none()
     }
 
     /// A sighting fitted.
     pub(super) fn clear(&mut self) {
         *self = Self::default();
+    }
+
+    /// A correction took the pose out of the filter's range: no odometry moves it any more.
+    pub(super) fn strayed(&mut self, stamp: Instant) {
+        self.first.get_or_insert(stamp);
+        self.last = Some(stamp);
+        self.lost = true;
     }
 
     /// The challenger moves as the robot does, and what was seen moves the other way.
@@ -162,15 +175,21 @@ impl Recovery {
     }
 
     /// A frame had nothing but rejections.
+    ///
+    /// A run of them ends when none arrives for twice as long as it takes to be lost: in a place
+    /// without markers there may be single outliers.
     pub(super) fn rejected(&mut self, stamp: Instant, lost_after: Duration) {
         let pause = self.last.and_then(|last| stamp.since(last));
-        if !self.lost && pause.is_some_and(|pause| pause > PAUSE) {
+        let end = lost_after.plus(lost_after);
+        if !self.lost && pause.is_some_and(|pause| pause > end) {
             self.clear();
         }
         let first = *self.first.get_or_insert(stamp);
         self.last = Some(self.last.map_or(stamp, |last| last.max(stamp)));
         self.count = self.count.saturating_add(1);
         let span = stamp.since(first).unwrap_or_default();
+        //= spec/ekf.md#ekf-09
+        //# The filter MUST say that it is lost when every sighting of a known marker was rejected for `lost_after`.
         self.lost |= self.count >= RUN_MIN && span >= lost_after;
     }
 
@@ -196,6 +215,9 @@ impl Recovery {
             challenger.support = challenger.support.min(SUPPORT).saturating_sub(1);
             return None;
         }
+        //= spec/ekf.md#ekf-10
+        //# The filter MUST take another pose over only when at least eight rejected sightings, carried along by
+        //# odometry, agree on it, and these are of more than one marker or the filter is lost.
         let enough = challenger.support >= SUPPORT && (self.lost || challenger.several);
         enough.then_some(if challenger.mapped {
             Takeover::Mean(challenger.pose, challenger.covariance)

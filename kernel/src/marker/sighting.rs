@@ -70,7 +70,9 @@ impl SightingNoise {
             && (!oriented || range.contains(&self.heading_rad2))
     }
 
-    pub(super) fn matrix(&self, oriented: bool) -> Matrix {
+    /// As a covariance of [x m, y m, heading rad], the heading's 1 where there is none.
+    #[must_use]
+    pub fn matrix(&self, oriented: bool) -> Matrix {
         let heading = if oriented { self.heading_rad2 } else { 1.0 };
         [
             [self.xx_m2, self.xy_m2, 0.0],

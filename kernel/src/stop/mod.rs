@@ -56,6 +56,8 @@ pub struct StopTimes {
 }
 
 impl Default for StopState {
+    //= spec/latch.md#latch-01
+    //# A kernel that was just created MUST be latched.
     /// Latched: a kernel that was just started waits for an operator.
     fn default() -> Self {
         Self {
@@ -76,6 +78,8 @@ impl Default for StopState {
 /// LATCH-01..06, ZONE-04.
 #[must_use]
 pub fn next(state: StopState, events: &StopEvents, times: StopTimes) -> StopState {
+    //= spec/latch.md#latch-02
+    //# A pulled emergency stop line MUST latch an emergency stop in the same tick.
     if events.emergency {
         return StopState {
             mode: Mode::Latched,
@@ -86,6 +90,8 @@ pub fn next(state: StopState, events: &StopEvents, times: StopTimes) -> StopStat
         };
     }
     match state.mode {
+        //= spec/latch.md#latch-03
+        //# An emergency stop MUST hold until a reset is given at rest with the line released.
         Mode::Latched if may_reset(&state, events, times) => running(events.now),
         Mode::Latched => state,
         Mode::Running if events.hazard => StopState {
@@ -95,6 +101,8 @@ pub fn next(state: StopState, events: &StopEvents, times: StopTimes) -> StopStat
             ..state
         },
         Mode::Running => state,
+        //= spec/zone.md#zone-04
+        //# A protective stop for the critical zone MUST last as long as any new scan has a return in the zone.
         Mode::Protective if events.hazard => StopState {
             clear_since: None,
             ..state
@@ -102,6 +110,8 @@ pub fn next(state: StopState, events: &StopEvents, times: StopTimes) -> StopStat
         Mode::Protective => {
             let clear_since = state.clear_since.unwrap_or(events.now);
             let clear = events.now.since(clear_since).unwrap_or_default();
+            //= spec/latch.md#latch-05
+            //# A protective stop MUST hold until the robot is at rest and its cause has been gone for the clear time.
             if events.at_rest && clear >= times.clear {
                 running(events.now)
             } else {
@@ -130,6 +140,9 @@ fn may_reset(state: &StopState, events: &StopEvents, times: StopTimes) -> bool {
     let Some(stamp) = events.reset else {
         return false;
     };
+    //= spec/latch.md#latch-04
+    //# A reset MUST have no effect unless its stamp is later than the moment at which the stop was latched and not
+    //# later than `now`.
     let fresh = events
         .now
         .since(stamp)

@@ -104,6 +104,10 @@ fn descriptions_that_are_refused_and_where() {
             "m.yaml:4: free_thresh is `0.7`; keep",
         ),
         (
+            "origin: [0,0,0]\noccupied_thresh: 0.1",
+            "m.yaml:4: occupied_thresh is `0.1`; keep",
+        ),
+        (
             "origin: [0,0,0]\noccupied_thresh: 1.1",
             "m.yaml:4: occupied_thresh is `1.1`; write a number from 0 to 1",
         ),

@@ -16,18 +16,7 @@ impl DenseFilter {
         let heading = sighting.heading_rad.unwrap_or_default();
         let pose = carry.then(&Pose2::new(sighting.x_m, sighting.y_m, heading));
         let turn = rotation(carry.heading_rad);
-        let n = sighting.noise;
-        let r = Matrix3::new(
-            n.xx_m2,
-            n.xy_m2,
-            0.0,
-            n.xy_m2,
-            n.yy_m2,
-            0.0,
-            0.0,
-            0.0,
-            n.heading_rad2,
-        );
+        let r = Matrix3::from(sighting.noise.matrix(true));
         Seen {
             pose: vector(&pose),
             noise: turn * r * turn.transpose(),
@@ -147,7 +136,8 @@ impl DenseFilter {
         frame: &Frame<'_>,
         report: &mut FrameReport,
     ) -> Vec<(usize, Measurement)> {
-        let carry = self.cycle.carry(frame.stamp);
+        // Admitted, so there is one.
+        let carry = self.cycle.carry(frame.stamp).unwrap_or_default();
         let mut fits = Vec::new();
         for (index, sighting) in frame.sightings.iter().take(FRAME_MAX).enumerate() {
             let seen = self.moved(&carry, sighting);
@@ -188,7 +178,8 @@ impl DenseFilter {
     }
 
     pub(super) fn learn(&mut self, frame: &Frame<'_>, report: &mut FrameReport) {
-        let carry = self.cycle.carry(frame.stamp);
+        // Admitted, so there is one.
+        let carry = self.cycle.carry(frame.stamp).unwrap_or_default();
         for (index, sighting) in frame.sightings.iter().take(FRAME_MAX).enumerate() {
             let verdict = report.record(index).map(|record| record.verdict);
             if verdict == Some(Verdict::Unknown) && self.rules.learn {

@@ -72,6 +72,8 @@ pub(super) fn host_death(robot: &Robot) -> Check {
         "If the host dies at {v:.2} m/s the drive goes on for {:.2} s, then {does}: {value:.2} m",
         h.watchdog_s
     );
+    //= spec/silent.md#silent-05
+    //# A certificate MUST NOT claim freedom from contact after the death of the host unless the tube covers it.
     let (finding, sentence) = if !h.cover_host_death {
         (
             Finding::NotCovered,

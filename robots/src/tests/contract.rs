@@ -218,6 +218,9 @@ fn the_zone_lies_inside_what_the_guard_keeps() {
 }
 
 /// 1.2 x 2 + 1.44 / 0.6 = 4.8 m.
+//= spec/silent.md#silent-05
+//= type=test
+//# A certificate MUST NOT claim freedom from contact after the death of the host unless the tube covers it.
 #[test]
 fn host_death_is_covered_only_where_the_file_says_so() {
     let bare = check(&seekur(), "C-HOST");

@@ -63,6 +63,11 @@ impl Loop<'_> {
             .cloned()
             .collect();
         self.vouched.clone_from(&sightings);
+        self.report.accepted += 1;
+        if !self.report.accepted.is_multiple_of(self.episode.tube_every) {
+            return;
+        }
+        self.report.judged += 1;
         let mut step = Step {
             stamp_s: stamp_us as f64 * 1e-6,
             now_s: now_us as f64 * 1e-6,
@@ -71,7 +76,6 @@ impl Loop<'_> {
             log: self.log.clone(),
             sightings,
         };
-        self.report.accepted += 1;
         self.report.courses += COURSES;
         if let Some(contact) = step.first_contact(self.episode, COURSES, &mut self.draw) {
             self.report

@@ -110,6 +110,8 @@ pub struct Episode {
     pub zone_m: [f64; 2],
     /// The drive's watchdog time, if the tube is to cover the host's death.
     pub watchdog_ms: Option<u64>,
+    /// The whole tube is sampled at each so many accepted steps; contacts are judged at all.
+    pub tube_every: usize,
 }
 
 prop_compose! {
@@ -157,6 +159,7 @@ prop_compose! {
             thin: flags[2],
             zone_m: [0.01, 0.005],
             watchdog_ms: None,
+            tube_every: 1,
         }
     }
 }

@@ -6,6 +6,8 @@ pub struct Report {
     pub ticks: usize,
     /// Ticks whose motion the kernel accepted and that move the robot.
     pub accepted: usize,
+    /// Accepted steps whose whole tube was sampled; [`super::episode::Episode::tube_every`].
+    pub judged: usize,
     pub courses: usize,
     /// Bodies the claim excused (GUARD-19), summed over the accepted steps.
     pub excused: usize,
@@ -22,6 +24,8 @@ pub struct Report {
     pub path_m: f64,
     pub slowed: usize,
     pub refused: usize,
+    /// Ticks in which the kernel braked a robot that moved.
+    pub braking: usize,
 }
 
 impl Report {
@@ -35,6 +39,8 @@ impl Report {
         self.path_m += other.path_m;
         self.slowed += other.slowed;
         self.refused += other.refused;
+        self.braking += other.braking;
+        self.judged += other.judged;
         self.contacts.extend(other.contacts);
         self.crashes.extend(other.crashes);
         self.faults.extend(other.faults);

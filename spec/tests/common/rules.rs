@@ -18,29 +18,6 @@ fn speeds(set_point: SetPoint) -> [f64; 2] {
     }
 }
 
-//= spec/limit.md#limit-01
-//= type=test
-//# The speed of every set point MUST lie between minus the reverse limit and the forward limit.
-//= spec/limit.md#limit-02
-//= type=test
-//# The turn rate of every set point MUST NOT exceed the turn rate limit in magnitude.
-//= spec/limit.md#limit-04
-//= type=test
-//# An accepted set point MUST differ from the one before by no more than the acceleration limits allow in the time
-//# between them.
-//= spec/limit.md#limit-05
-//= type=test
-//# The curvature of every Ackermann set point MUST NOT exceed the curvature limit in magnitude.
-//= spec/silent.md#silent-01
-//= type=test
-//# Every decision MUST expire no later than one control period plus jitter after its tick.
-//= spec/brake.md#brake-03
-//= type=test
-//# Braking set points of a differential drive MUST keep the ratio of speed to turn rate.
-//= spec/latch.md#latch-07
-//= type=test
-//# The set point MUST NOT grow in magnitude while a stop is active.
-
 /// Checks one decision against the one before; broken rules go into the report.
 pub fn check(
     episode: &Episode,

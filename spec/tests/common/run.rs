@@ -309,6 +309,8 @@ impl<'e> Loop<'e> {
             matches!(decision.action, Action::Pass | Action::Slow) && decision.verdict.is_some();
         self.report.slowed += usize::from(decision.action == Action::Slow);
         self.report.refused += usize::from(decision.action == Action::Brake);
+        self.report.braking +=
+            usize::from(decision.action == Action::Brake && !self.plant.is_at_rest());
         self.pilot.learn(accepted && decision.factor_permille > 200);
         if accepted && set_point != still(self.episode) {
             self.check_claim(decision, now_us, stamp_us, truth);

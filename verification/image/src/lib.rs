@@ -5,13 +5,13 @@
 //! does not allocate either.
 #![no_std]
 
-use haltline::config::Config;
+use haltline::config::{Config, Scanner};
 use haltline::convert::{self, BeamEncoding};
 use haltline::decision::Decision;
 use haltline::guard::hull::Hull;
 use haltline::guard::tube::{Tube, TubeParameters};
-use haltline::input::{Beam, Command, Inputs, Odometry, Reading, Scan};
-use haltline::kernel::navigate::{Navigation, Planning, Route};
+use haltline::input::{Beam, Command, Inputs, Odometry, Pose, Reading, Scan};
+use haltline::kernel::navigate::{Localiser, Navigation, Planning, Route};
 use haltline::marker::{
     FilterRules, Frame, FrameReport, Increment, MarkerEkf, MarkerFilter, Pose2, Prediction,
 };
@@ -21,7 +21,8 @@ use haltline::units::Length;
 
 /// The capacities of the shipped command line tool.
 type Kernel = haltline::Kernel<4, 1100, 1024>;
-type Navigator = haltline::Navigator<4, 1100, 1024, 160, 160>;
+type Navigator = haltline::Navigator<4, 1100, 1024>;
+type Grid = haltline::grid::RollingGrid<160, 160>;
 type Filter = MarkerEkf<20, 1024>;
 
 unsafe extern "C" {
@@ -75,7 +76,7 @@ pub extern "C" fn image_navigator(
     out.is_some()
 }
 
-/// Navigator::step with one scan and a route: grid, planner and guard.
+/// Navigator::step with one scan and a route: planner and guard.
 #[unsafe(no_mangle)]
 #[allow(improper_ctypes_definitions)]
 pub extern "C" fn image_navigate(
@@ -97,6 +98,18 @@ pub extern "C" fn image_navigate(
     };
     let route = (flags & 4 != 0).then_some(route);
     *out = navigator.step(&inputs, route, Instant::from_us(now));
+}
+
+/// RollingGrid::update.
+#[unsafe(no_mangle)]
+#[allow(improper_ctypes_definitions)]
+pub extern "C" fn image_grid(
+    grid: &mut Grid,
+    pose: &Pose,
+    scanner: &Scanner,
+    beams: &&[Beam],
+) -> bool {
+    grid.update(pose, scanner, beams).is_ok()
 }
 
 /// MarkerEkf::new.
@@ -127,6 +140,21 @@ pub extern "C" fn image_predict(
 #[allow(improper_ctypes_definitions)]
 pub extern "C" fn image_correct(filter: &mut Filter, frame: &Frame<'_>, out: &mut FrameReport) {
     *out = filter.correct(frame);
+}
+
+/// Localiser: odometry, a frame, and where the odometry frame lies.
+#[unsafe(no_mangle)]
+#[allow(improper_ctypes_definitions)]
+pub extern "C" fn image_localise(
+    localiser: &mut Localiser<Filter>,
+    odometry: &Odometry,
+    frame: &Frame<'_>,
+    out: &mut Option<Pose>,
+) -> bool {
+    let done = localiser.odometry(odometry) == Prediction::Done;
+    let _ = localiser.frame(frame);
+    *out = localiser.odometry_frame(odometry.stamp);
+    done
 }
 
 /// Tube::new.

@@ -16,7 +16,7 @@ use haltline::units::{
     Acceleration, AngularAcceleration, AngularSpeed, BinaryAngle, Length, Ppm, Speed,
 };
 
-use super::parallel;
+use super::parallel_each;
 use crate::prove::ledger::Means;
 use crate::prove::native::Enumeration;
 
@@ -28,10 +28,12 @@ type Robot = Kernel<1, BEAMS, 8>;
 
 /// What a tick may bring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Event {
+pub(super) enum Event {
     Fresh,
     NoScan,
     NoOdometry,
+    /// Neither scan nor odometry: what ages fastest must stop the robot by itself.
+    Blind,
     NoCommand,
     FutureScan,
     FutureOdometry,
@@ -43,10 +45,11 @@ enum Event {
     Malformed,
 }
 
-const EVENTS: [Event; 12] = [
+const EVENTS: [Event; 13] = [
     Event::Fresh,
     Event::NoScan,
     Event::NoOdometry,
+    Event::Blind,
     Event::NoCommand,
     Event::FutureScan,
     Event::FutureOdometry,
@@ -78,13 +81,13 @@ pub(super) fn all() -> [Enumeration; 1] {
             "INPUT-10",
             "ZONE-01",
         ],
-        domain: "all sequences of 6 of 12 events (scan, odometry, command, line, reset, pause, zone) from a running robot, on Kernel::step",
+        domain: "all sequences of 6 of 13 events (scan, odometry, command, line, reset, pause, zone) from a running robot, on Kernel::step",
         file: FILE,
         run,
     }]
 }
 
-fn config() -> Config<1> {
+pub(super) fn config() -> Config<1> {
     let ms = Duration::from_ms;
     let speed = Speed::from_um_per_s;
     let turn = AngularSpeed::from_urad_per_s;
@@ -111,7 +114,7 @@ fn config() -> Config<1> {
             period: ms(40),
             jitter: ms(2),
             actuation_latency: ms(40),
-            scan_age_max: ms(60),
+            scan_age_max: ms(100),
             odometry_age_max: ms(60),
             command_age_max: ms(60),
             rest: ms(40),
@@ -166,12 +169,14 @@ fn scanner() -> Scanner {
 
 /// The robot, its world, and what the rules say of it.
 #[derive(Clone)]
-struct Play {
+pub(super) struct Play {
     robot: Robot,
     now_us: u64,
-    odometry: Odometry,
+    pub(super) odometry: Odometry,
     sent: Twist,
-    status: StopStatus,
+    pub(super) status: StopStatus,
+    /// What the first beam, straight behind, returns; nothing in an empty world.
+    pub(super) behind: Beam,
     scan_us: u64,
     odometry_us: u64,
     command_us: u64,
@@ -181,7 +186,7 @@ struct Play {
 
 impl Play {
     /// A robot that was reset and drives.
-    fn running() -> Result<Self, String> {
+    pub(super) fn running() -> Result<Self, String> {
         let robot = Robot::new(config()).map_err(|error| format!("{error:?}"))?;
         let mut play = Self {
             robot,
@@ -189,6 +194,7 @@ impl Play {
             odometry: Odometry::default(),
             sent: Twist::default(),
             status: StopStatus::Latched,
+            behind: Beam::NoReturn,
             scan_us: 0,
             odometry_us: 0,
             command_us: 0,
@@ -210,7 +216,7 @@ impl Play {
         Ok(play)
     }
 
-    fn tick(&mut self, event: Event, twin: bool) -> Result<(), String> {
+    pub(super) fn tick(&mut self, event: Event, twin: bool) -> Result<(), String> {
         let span = if event == Event::Pause {
             3 * TICK_US
         } else {
@@ -238,6 +244,7 @@ impl Play {
     fn decide(&mut self, event: Event) -> Decision {
         let now = self.now_us;
         let mut beams = [Beam::NoReturn; BEAMS];
+        beams[0] = self.behind;
         if event == Event::ZoneReturn {
             beams[20] = Beam::Hit(180);
         }
@@ -249,13 +256,13 @@ impl Play {
             })
         };
         let scans = [match event {
-            Event::NoScan => Reading::Absent,
+            Event::NoScan | Event::Blind => Reading::Absent,
             Event::FutureScan => scan(now + 5_000),
             Event::Malformed => Reading::Malformed,
             _ => scan(now - 2_000),
         }];
         let odometry = match event {
-            Event::NoOdometry => Reading::Absent,
+            Event::NoOdometry | Event::Blind => Reading::Absent,
             Event::FutureOdometry => Reading::Value(Odometry {
                 stamp: Instant::from_us(now + 1),
                 ..self.odometry
@@ -288,10 +295,16 @@ impl Play {
 
     /// What the rules need to know, kept apart from the kernel.
     fn keep_books(&mut self, event: Event, now: u64) {
-        if !matches!(event, Event::NoScan | Event::FutureScan | Event::Malformed) {
+        if !matches!(
+            event,
+            Event::NoScan | Event::Blind | Event::FutureScan | Event::Malformed
+        ) {
             self.scan_us = now - 2_000;
         }
-        if !matches!(event, Event::NoOdometry | Event::FutureOdometry) {
+        if !matches!(
+            event,
+            Event::NoOdometry | Event::Blind | Event::FutureOdometry
+        ) {
             self.odometry_us = now;
         }
         if !matches!(event, Event::NoCommand | Event::OldCommand) {
@@ -306,7 +319,7 @@ impl Play {
         };
         let grows = sent.linear > self.sent.linear;
         let stops = decision.action >= Action::ProtectiveStop;
-        let stale = now - self.scan_us > 60_000 || now - self.odometry_us > 60_000;
+        let stale = now - self.scan_us > 100_000 || now - self.odometry_us > 60_000;
         let hazard = matches!(
             event,
             Event::FutureScan | Event::FutureOdometry | Event::Pause | Event::ZoneReturn
@@ -389,19 +402,4 @@ fn run(twin: bool) -> Result<u64, String> {
         Ok(())
     })?;
     Ok(ticks.into_inner())
-}
-
-/// Like `parallel`, one case at a time.
-fn parallel_each(
-    cases: u64,
-    check: impl Fn(u64) -> Result<(), String> + Sync,
-) -> Result<u64, String> {
-    const BLOCK: u64 = 1 << 16;
-    parallel(0..cases * BLOCK, |number| {
-        if number % BLOCK == 0 {
-            check(number / BLOCK)
-        } else {
-            Ok(())
-        }
-    })
 }

@@ -14,12 +14,15 @@
 mod angles;
 mod arith;
 mod braking;
+mod frozen;
 mod intervals;
 mod kernel;
 mod seen;
 mod shapes;
+mod spot;
 mod trig;
 mod tube;
+mod window;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -42,8 +45,20 @@ pub fn all() -> Vec<Enumeration> {
     all.extend(shapes::all());
     all.extend(intervals::all());
     all.extend(tube::all());
+    all.extend(spot::all());
     all.extend(kernel::all());
+    all.extend(frozen::all());
+    all.extend(window::all());
     all
+}
+
+/// The number of tubes that were looked at; too few are a domain that shows nothing.
+fn most_have_tubes(built: u64, cases: u64) -> Result<u64, String> {
+    if built > cases / 2 {
+        Ok(built)
+    } else {
+        Err(format!("only {built} of {cases} settings have a tube"))
+    }
 }
 
 /// Runs `check` for every number of `cases`; the number of cases, or the least failing one seen.
@@ -83,4 +98,19 @@ fn parallel(
         Some((case, words)) => Err(format!("case {case}: {words}")),
         None => Ok(cases.end - cases.start),
     }
+}
+
+/// Like `parallel`, one case at a time.
+fn parallel_each(
+    cases: u64,
+    check: impl Fn(u64) -> Result<(), String> + Sync,
+) -> Result<u64, String> {
+    const BLOCK: u64 = 1 << 16;
+    parallel(0..cases * BLOCK, |number| {
+        if number % BLOCK == 0 {
+            check(number / BLOCK)
+        } else {
+            Ok(())
+        }
+    })
 }

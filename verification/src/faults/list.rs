@@ -18,7 +18,7 @@ const fn fault(
 }
 
 /// Chosen by hand.
-pub(super) const CHOSEN: [Fault; 46] = [
+pub(super) const CHOSEN: [Fault; 49] = [
     fault(
         "geometry/rect.rs",
         "point.x <= self.front",
@@ -33,8 +33,8 @@ pub(super) const CHOSEN: [Fault; 46] = [
     ),
     fault(
         "geometry/rect.rs",
-        "if self.contains(a) || self.contains(b) {",
-        "if self.contains(a) && self.contains(b) {",
+        "if self.contains(a) || self.contains(b) {\n            return true;",
+        "if self.contains(a) || self.contains(b) {\n            return false;",
         "shapes::segment_touches",
     ),
     fault(
@@ -294,5 +294,23 @@ pub(super) const CHOSEN: [Fault; 46] = [
         "if command.stamp <= self.stop.released {",
         "if false {",
         "kernel::every",
+    ),
+    fault(
+        "kernel/ingest.rs",
+        "Order::Newer if ends > now =>",
+        "Order::Newer if scan.stamp > now =>",
+        "test -p haltline-spec --release --test tick",
+    ),
+    fault(
+        "kernel/motion.rs",
+        "for sent in self.pipeline.since(since) {",
+        "for sent in self.pipeline.since(since).take(0) {",
+        "test -p haltline-spec --release --test guard",
+    ),
+    fault(
+        "guard/memory/cloud.rs",
+        "            .saturating_add(u64::from(gap_mm));",
+        "            .saturating_add(u64::from(gap_mm) * 0);",
+        "test -p haltline --lib guard::memory",
     ),
 ];

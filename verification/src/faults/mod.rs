@@ -9,8 +9,16 @@ mod list;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::{Duration, Instant};
 
+use crate::prove::check::{Check, Job, checks};
+use crate::prove::runner::{Refutation, refute};
 use crate::prove::tools::{ProveError, run};
+
+/// After so much processor time a proof has no answer, which is no kill.
+const CAP: Duration = Duration::from_secs(120);
+/// A build with its test that takes so long, also on a busy machine, hangs.
+const HANGS: &str = "30m";
 
 /// One fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +29,7 @@ pub struct Fault {
     pub from: &'static str,
     /// What stands there instead.
     pub to: &'static str,
-    /// Part of the name of the proof that must catch it.
+    /// Part of the name of the proof that must catch it, or `test` and arguments of `cargo test`.
     pub check: &'static str,
 }
 
@@ -45,7 +53,6 @@ pub fn all(root: &Path) -> Result<Vec<Fault>, ProveError> {
     let path = root.join("verification/mutants.txt");
     if path.exists() {
         let text = fs::read_to_string(&path).map_err(|error| ProveError::file(&path, error))?;
-        // Faults live as long as the program; there are few.
         let text: &'static str = Box::leak(text.into_boxed_str());
         for block in text.split("\n\n").filter(|block| block.contains("file: ")) {
             all.push(drawn(block).ok_or_else(|| {
@@ -56,7 +63,7 @@ pub fn all(root: &Path) -> Result<Vec<Fault>, ProveError> {
     Ok(all)
 }
 
-/// A drawn fault: lines `file:`, `from:`, `to:`, `check:`; it lives as long as the program.
+/// A drawn fault: lines `file:`, `from:`, `to:`, `check:`, with `\n` for the end of a line.
 fn drawn(block: &'static str) -> Option<Fault> {
     let field = |name: &str| {
         block.lines().find_map(|line| {
@@ -64,10 +71,13 @@ fn drawn(block: &'static str) -> Option<Fault> {
                 .map(|rest| rest.trim_start_matches(' '))
         })
     };
+    // Faults live as long as the program; there are few.
+    let lines =
+        |text: &str| -> &'static str { Box::leak(text.replace("\\n", "\n").into_boxed_str()) };
     Some(Fault {
         file: field("file:")?,
-        from: field("from:")?,
-        to: field("to:")?,
+        from: lines(field("from:")?),
+        to: lines(field("to:")?),
         check: field("check:")?,
     })
 }
@@ -79,25 +89,36 @@ fn drawn(block: &'static str) -> Option<Fault> {
 pub fn try_shard(
     root: &Path,
     (number, of): (usize, usize),
+    filter: &str,
 ) -> Result<Vec<(Fault, Fate)>, ProveError> {
     let copy = copied(root)?;
-    let faults = all(root)?;
     let mut fates = Vec::new();
-    for (index, fault) in faults.iter().enumerate() {
-        if index % of != number - 1 {
+    for (index, fault) in all(root)?.iter().enumerate() {
+        let named = [fault.file, fault.check]
+            .iter()
+            .any(|name| name.contains(filter));
+        if index % of != number - 1 || !named {
             continue;
         }
+        let started = Instant::now();
         let fate = tried(&copy, fault)?;
         println!(
-            "{fate:?}: {} `{}` -> `{}` by {}",
+            "{:3} {fate:?} in {} s: {} `{}` -> `{}` by {}",
+            index + 1,
+            started.elapsed().as_secs(),
             fault.file,
-            fault.from.trim(),
-            fault.to.trim(),
+            one_line(fault.from),
+            one_line(fault.to),
             fault.check
         );
         fates.push((*fault, fate));
     }
     Ok(fates)
+}
+
+/// For a line of the report.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// A copy of all tracked files, with the tools of the original.
@@ -126,15 +147,19 @@ fn copied(root: &Path) -> Result<PathBuf, ProveError> {
     Ok(copy)
 }
 
+/// What comes before the tests of a file.
+fn production(whole: &str) -> &str {
+    whole
+        .split("#[cfg(test)]\nmod tests {")
+        .next()
+        .unwrap_or(whole)
+}
+
 /// Puts the fault in, runs its check, takes it out again.
 fn tried(copy: &Path, fault: &Fault) -> Result<Fate, ProveError> {
     let path = copy.join("kernel/src").join(fault.file);
     let whole = fs::read_to_string(&path).map_err(|error| ProveError::file(&path, error))?;
-    let production = whole
-        .split("#[cfg(test)]\nmod tests {")
-        .next()
-        .unwrap_or(&whole);
-    if production.matches(fault.from).count() != 1 {
+    if production(&whole).matches(fault.from).count() != 1 {
         return Ok(Fate::Invalid("its text does not occur exactly once".into()));
     }
     let write = |text: &str| fs::write(&path, text).map_err(|error| ProveError::file(&path, error));
@@ -144,26 +169,122 @@ fn tried(copy: &Path, fault: &Fault) -> Result<Fate, ProveError> {
     fate
 }
 
+/// The check on the broken copy: a test, or proofs.
 fn checked(copy: &Path, check: &str) -> Result<Fate, ProveError> {
+    if let Some(arguments) = check.strip_prefix("test ") {
+        return tested(copy, arguments);
+    }
+    let wanted: Vec<Check> = checks(copy)?
+        .into_iter()
+        .filter(|found| found.entry.id.contains(check))
+        .collect();
+    if wanted.is_empty() {
+        return Ok(Fate::Invalid("no such check".into()));
+    }
+    // Enumerations are machine code of the kernel, so they need a program with the fault in it.
+    if wanted
+        .iter()
+        .any(|found| !matches!(found.job, Job::Harness(..)))
+    {
+        return proved(copy, check);
+    }
+    // The fault may break the build, which is no kill.
+    Ok(
+        match refute(copy, &wanted, &copy.join("target/prove"), CAP) {
+            Ok(Refutation::Violated(_)) => Fate::Killed,
+            Ok(Refutation::None) => Fate::Survived,
+            Ok(Refutation::Unknown(why)) => Fate::Invalid(why),
+            Err(error) => Fate::Invalid(last_line(&error.to_string())),
+        },
+    )
+}
+
+fn cargo(copy: &Path) -> Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
+    let mut command = Command::new("timeout");
     command
-        .args(["run", "--release", "--quiet", "-p", "haltline-verification"])
-        .args(["--", "prove", check, "--cap", "120"])
+        .args(["--signal=KILL", HANGS])
+        .arg(cargo)
         .current_dir(copy)
         .env("CARGO_TARGET_DIR", copy.join("target"));
-    let output = command
+    command
+}
+
+fn last_line(text: &str) -> String {
+    text.lines().last().unwrap_or_default().to_owned()
+}
+
+/// `cargo test` with these arguments, in the broken copy.
+fn tested(copy: &Path, arguments: &str) -> Result<Fate, ProveError> {
+    let output = cargo(copy)
+        .args(["test", "--quiet"])
+        .args(arguments.split(' '))
+        .output()
+        .map_err(|error| ProveError::Start("cargo".into(), error))?;
+    let said = String::from_utf8_lossy(&output.stdout);
+    let ran = said
+        .lines()
+        .any(|line| line.starts_with("running ") && !line.starts_with("running 0 "));
+    Ok(match output.status.code() {
+        Some(0) if ran => Fate::Survived,
+        Some(0) => Fate::Invalid("no such test".into()),
+        Some(101) if said.contains("test result: FAILED") => Fate::Killed,
+        _ => Fate::Invalid(last_line(&String::from_utf8_lossy(&output.stderr))),
+    })
+}
+
+/// The proofs of that name, by a runner built from the broken copy.
+fn proved(copy: &Path, check: &str) -> Result<Fate, ProveError> {
+    let output = cargo(copy)
+        .args(["run", "--release", "--quiet", "-p", "haltline-verification"])
+        .args(["--", "prove", check, "--cap", &CAP.as_secs().to_string()])
         .output()
         .map_err(|error| ProveError::Start("cargo".into(), error))?;
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     // Unknown is no answer, and a kernel that does not build is no fault.
-    let last = |text: &str| text.lines().last().unwrap_or_default().to_owned();
     Ok(match output.status.code() {
         Some(1) if said.contains("] FAILS") => Fate::Killed,
-        Some(0) if said.contains(" 0 checks run") || said.starts_with("0 checks") => {
-            Fate::Invalid("no such check".into())
-        }
         Some(0) => Fate::Survived,
-        _ => Fate::Invalid(last(&String::from_utf8_lossy(&output.stderr))),
+        _ => Fate::Invalid(last_line(&String::from_utf8_lossy(&output.stderr))),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn escapes_in_the_list_become_lines() {
+        let block =
+            "file: a.rs\nfrom: x {\\n    y\nto: x {\\n    z\ncheck: test -p haltline --lib a";
+        let fault = drawn(block).unwrap();
+        assert_eq!((fault.from, fault.to), ("x {\n    y", "x {\n    z"));
+        assert_eq!(fault.check, "test -p haltline --lib a");
+        assert_eq!(drawn("file: a.rs\nfrom: x"), None);
+    }
+
+    #[test]
+    fn every_fault_has_its_place_and_every_proof_named_exists() {
+        let root = crate::prove::command::checkout();
+        let known = checks(&root).unwrap();
+        let all = all(&root).unwrap();
+        assert!(all.len() >= 40);
+        for fault in all {
+            let path = root.join("kernel/src").join(fault.file);
+            let text = fs::read_to_string(&path).unwrap();
+            assert_eq!(
+                production(&text).matches(fault.from).count(),
+                1,
+                "{fault:?}"
+            );
+            assert_ne!(fault.from, fault.to);
+            assert!(
+                fault.check.starts_with("test ")
+                    || known
+                        .iter()
+                        .any(|check| check.entry.id.contains(fault.check)),
+                "{fault:?}"
+            );
+        }
+    }
 }

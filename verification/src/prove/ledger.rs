@@ -29,7 +29,7 @@ impl fmt::Display for Means {
         out.write_str(match self {
             Self::ModelChecked => "proved",
             Self::Enumerated => "enumerated",
-            Self::StateSpace => "all states visited",
+            Self::StateSpace => "all sequences visited",
             Self::Lemma | Self::Intervals => "lemma",
         })
     }

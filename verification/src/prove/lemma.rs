@@ -9,8 +9,8 @@ use super::check::{Blank, Check, Job, blank};
 use super::ledger::{Means, Verdict};
 use super::tools::ProveError;
 
-/// Solvers that are asked, with the arguments that limit their time.
-const SOLVERS: [(&str, &[&str]); 2] = [("z3", &["-T:60"]), ("cvc5", &["--tlimit=20000"])];
+/// Solvers that are asked, with their limits of processor time in seconds.
+const SOLVERS: [(&str, u32); 2] = [("z3", 60), ("cvc5", 20)];
 
 /// The lemmas in `spec/lemmas`.
 pub(super) fn checks(root: &Path) -> Result<Vec<Check>, ProveError> {
@@ -73,8 +73,11 @@ fn check(root: &Path, path: &Path) -> Result<Check, ProveError> {
 fn answers(path: &Path) -> Vec<(&'static str, String)> {
     SOLVERS
         .iter()
-        .map(|(solver, arguments)| {
-            let output = Command::new(solver).args(*arguments).arg(path).output();
+        .map(|(solver, seconds)| {
+            let output = Command::new("sh")
+                .args(["-c", &format!("ulimit -t {seconds}; exec {solver} \"$0\"")])
+                .arg(path)
+                .output();
             let word = output.map_or_else(
                 |error| error.to_string(),
                 |output| {

@@ -6,6 +6,7 @@
 
 pub mod check;
 pub mod command;
+pub mod composition;
 pub mod engine;
 pub mod harness;
 pub mod ledger;

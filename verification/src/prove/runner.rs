@@ -99,6 +99,50 @@ fn report(entry: &Entry, number: usize, of: usize) {
     }
 }
 
+/// What became of harnesses that ought to fail.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Refutation {
+    /// One is violated: what, and where.
+    Violated(String),
+    /// All hold.
+    None,
+    /// No answer.
+    Unknown(String),
+}
+
+/// Runs harnesses alone, without covers and twins, until one is violated.
+///
+/// # Errors
+/// If the tools cannot be had or the harnesses do not build.
+pub fn refute(
+    root: &Path,
+    wanted: &[Check],
+    folder: &Path,
+    cap: Duration,
+) -> Result<Refutation, ProveError> {
+    let shop = Workshop::open(root, wanted, folder, cap)?;
+    let mut found = Refutation::None;
+    for check in wanted {
+        let Job::Harness(proof, _) = &check.job else {
+            continue;
+        };
+        match shop.outcome(proof, Mode::Prove) {
+            Outcome::Holds => {}
+            Outcome::Violated(what, place) => {
+                let place =
+                    place.map_or_else(String::new, |(file, line)| format!(" at {file}:{line}"));
+                return Ok(Refutation::Violated(format!(
+                    "{}: {what}{place}",
+                    proof.name
+                )));
+            }
+            Outcome::Unknown(why) => found = Refutation::Unknown(why),
+            Outcome::Unreached(_) => {}
+        }
+    }
+    Ok(found)
+}
+
 impl<'a> Workshop<'a> {
     fn open(
         root: &Path,

@@ -77,7 +77,8 @@ pub fn kernel_files(root: &Path, file: &Path) -> Result<BTreeSet<PathBuf>, Prove
     Ok(found)
 }
 
-fn read(path: &Path) -> Result<String, ProveError> {
+/// Essence of a source file.
+pub(crate) fn read(path: &Path) -> Result<String, ProveError> {
     let text = fs::read_to_string(path).map_err(|error| ProveError::file(path, error))?;
     Ok(essence(&text))
 }

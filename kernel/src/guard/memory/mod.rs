@@ -119,6 +119,9 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
         };
         self.seen.follow(robot);
         self.review(model, robot, odometer);
+        //= spec/memory.md#memory-01
+        //# A return within the range of the memory MUST be remembered until it is cleared, confirmed, expired or
+        //# turned into unknown space.
         self.keep_replaced(model, arrival.scanner, robot, odometer);
         if let Some(sweep) = self.sweeps.get_mut(arrival.scanner) {
             core::mem::swap(sweep, &mut self.scratch);
@@ -144,6 +147,8 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
             let misses = misses_after(sight, point.misses, model.clear_after_scans);
             let gone = misses.is_none();
             let lost = !gone && self.is_out_of_reach(model, &point, now, place, robot);
+            //= spec/memory.md#memory-09
+            //# A remembered hit older than `age_max` MUST NOT become free, only unknown.
             if lost {
                 self.seen.forget(place);
             }
@@ -256,6 +261,8 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
                 };
                 self.count = count.saturating_add(1);
             }
+            //= spec/memory.md#memory-05
+            //# When the store is full, the surroundings of a hit that finds no place MUST become unknown.
             None => {
                 self.overflows = self.overflows.saturating_add(1);
                 self.seen.forget(place);
@@ -269,6 +276,9 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
         let stale = model.staleness(then, before, now, odometer);
         let lever_mm = u64::from(COVER_MM.unsigned_abs());
         let turned = mul_div_up(stale.turn_urad, lever_mm, 1000);
+        //= spec/memory.md#memory-07
+        //# The known region MUST shrink from its unwatched borders no slower than the obstacle speed bound and the
+        //# odometry drift demand.
         self.seen.erode(
             stale
                 .drift_um
@@ -385,6 +395,9 @@ impl<const S: usize, const B: usize, const M: usize> Memory<S, B, M> {
 pub fn misses_after(sight: Sight, misses: u8, clear_after_scans: u8) -> Option<u8> {
     match sight {
         Sight::Confirmed => None,
+        //= spec/memory.md#memory-02
+        //# A remembered hit MUST NOT be cleared before the configured number of consecutive scans had at least one
+        //# beam through its error disc and all of these beams pass beyond it.
         Sight::LookedPast => {
             Some(misses.saturating_add(1)).filter(|&misses| misses < clear_after_scans)
         }
@@ -403,6 +416,9 @@ fn place_distance_up(known: &Remembered, place: PointMm) -> u16 {
 
 /// How near a new return must be to take a stored point's place, mm: what one body may differ
 /// by within the sensor's error, less what odometry has blurred.
+//= spec/memory.md#memory-03
+//# A remembered hit MUST NOT be replaced by a new return unless the inflation of that return covers the error disc of
+//# the hit.
 fn same_mm(model: &MemoryModel, stale: &Staleness) -> i32 {
     let um = model.sensor_um.saturating_sub(stale.drift_um);
     i32::try_from(um / 1000).unwrap_or(0)

@@ -50,6 +50,9 @@ impl MemoryModel {
         let turned = odometer.turned_urad.saturating_sub(then.turned_urad);
         let age = now.since(stamp).unwrap_or_default().as_us();
         Staleness {
+            //= spec/memory.md#memory-04
+            //# The error of a remembered hit MUST grow by at least the odometry error over the distance driven and
+            //# the angle turned since it was seen.
             drift_um: mul_micro_up(self.drift_linear_ppm, travelled),
             turn_urad: mul_micro_up(self.drift_angular_ppm, turned),
             moved_um: mul_micro_up(self.obstacle_speed, age),

@@ -82,6 +82,10 @@ fn a_scan_that_cannot_tell_starts_the_count_anew() {
     assert_eq!(pole_points(&memory), 1);
 }
 
+//= spec/memory.md#memory-01
+//= type=test
+//# A return within the range of the memory MUST be remembered until it is cleared, confirmed, expired or turned into
+//# unknown space.
 #[test]
 fn what_blind_scans_replace_is_remembered_and_shown_again_it_is_not_kept_twice() {
     let mut memory = Small::default();
@@ -96,6 +100,9 @@ fn what_blind_scans_replace_is_remembered_and_shown_again_it_is_not_kept_twice()
     );
 }
 
+//= spec/memory.md#memory-05
+//= type=test
+//# When the store is full, the surroundings of a hit that finds no place MUST become unknown.
 #[test]
 fn what_finds_no_room_becomes_unknown_space() {
     let mut memory = Small::default();
@@ -111,6 +118,9 @@ fn what_finds_no_room_becomes_unknown_space() {
     assert!(!memory.seen.is_known(PointMm { x: 2000, y: 0 }) || !memory.seen.is_known(place));
 }
 
+//= spec/memory.md#memory-09
+//= type=test
+//# A remembered hit older than `age_max` MUST NOT become free, only unknown.
 #[test]
 fn what_is_too_old_becomes_unknown_not_free() {
     let mut memory = Small::default();
@@ -170,4 +180,75 @@ fn the_anchor_moves_and_everything_stays_where_it_is() {
     memory.refresh(&model(), moved, now, Odometer::default());
     let after: std::vec::Vec<_> = memory.clouds().flatten().copied().collect();
     assert_eq!(before, after);
+}
+
+//= spec/guard.md#guard-15
+//= type=test
+//# A return MUST be inflated by no less than its own lateral beam gap, range times angle to the neighbouring beam.
+#[test]
+fn a_return_is_inflated_by_its_own_beam_gap() {
+    let mut memory = Small::default();
+    for (ms, range) in [500_u16, 1000, 2000, 2900].into_iter().enumerate() {
+        let ms = ms as u64;
+        see(&mut memory, ms, |_| Beam::Hit(range));
+        let now = Instant::from_us(ms * 1000);
+        memory.refresh(&model(), LocalPose::default(), now, Odometer::default());
+        let newest = memory.clouds().next().unwrap();
+        assert_eq!(newest.len(), 181);
+        // One degree between beams, and 10 mm of the sensor.
+        let gap = f64::from(range) * 1_f64.to_radians();
+        for point in newest {
+            let extra = f64::from(point.extra_mm);
+            assert!(extra >= gap + 10.0 && extra < gap + 12.0, "{point:?}");
+        }
+    }
+}
+
+//= spec/memory.md#memory-07
+//= type=test
+//# The known region MUST shrink from its unwatched borders no slower than the obstacle speed bound and the odometry drift demand.
+#[test]
+fn known_space_shrinks_as_fast_as_obstacles_move_and_odometry_drifts() {
+    let border = |obstacle_speed: u64, odometer: Odometer| {
+        let mut memory = Small::default();
+        // A square of 2 m that nobody looks at any more.
+        let outline = Rect {
+            front: 8_000,
+            rear: 8_000,
+            left: 8_000,
+            right: 8_000,
+        };
+        memory.occupy(LocalPose::default(), outline);
+        let mut model = model();
+        model.obstacle_speed = obstacle_speed;
+        let mut now = 0;
+        for step in 1..=10 {
+            now += 40_000;
+            let part = |total: u64| total * step / 10;
+            let odometer = Odometer {
+                travelled_um: part(odometer.travelled_um),
+                turned_urad: part(odometer.turned_urad),
+            };
+            memory.age(&model, Instant::from_us(now), odometer);
+        }
+        (0..1_100)
+            .rev()
+            .find(|&x| memory.seen.is_known(PointMm { x, y: 0 }))
+            .unwrap_or(0)
+    };
+    let still = border(0, Odometer::default());
+    assert!((900..=1_024).contains(&still), "{still}");
+    // 0.4 s at 0.5 m/s are 200 mm, that is three whole cells; the rest stays owed.
+    assert!(border(500_000, Odometer::default()) <= still - 3 * 64);
+    // 40 m at 5 mm/m, and 2 rad at 10 mrad/rad with a lever of 3.8 m.
+    let driven = Odometer {
+        travelled_um: 40_000_000,
+        turned_urad: 0,
+    };
+    assert!(border(0, driven) <= still - 3 * 64);
+    let turned = Odometer {
+        travelled_um: 0,
+        turned_urad: 6_000_000,
+    };
+    assert!(border(0, turned) <= still - 3 * 64);
 }

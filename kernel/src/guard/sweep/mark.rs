@@ -37,6 +37,9 @@ impl<const B: usize> Sweep<B> {
         let last = self.point_at(self.count.saturating_sub(1), 0);
         line(&mut rows, seen.cell_point(last));
         line(&mut rows, start);
+        //= spec/memory.md#memory-06
+        //# A cell MUST be unknown unless its centre was inside the visible region of a usable scan or the area
+        //# cleared at start.
         seen.mark(&rows);
     }
 
@@ -46,7 +49,11 @@ impl<const B: usize> Sweep<B> {
         let clear = match self.beams.get(index) {
             Some(Beam::Hit(range)) => i32::from(*range)
                 .saturating_sub(millimetres(scanner.error.as_um()).saturating_add(1)),
+            //= spec/input.md#input-04
+            //# A no-return beam MUST NOT make space known beyond the `no_return_clear` distance of its scanner.
             Some(Beam::NoReturn) => millimetres(scanner.no_return_clear.as_um()),
+            //= spec/input.md#input-03
+            //# The ray of an invalid beam MUST leave the space it crosses unknown.
             _ => 0,
         };
         clear.max(0).min(rules.clear_max_mm)

@@ -111,6 +111,9 @@ impl<const B: usize> Sweep<B> {
         self.place_points(scanner, rules);
     }
 
+    //= spec/guard.md#guard-16
+    //# Every beam MUST be moved from the robot's pose at its own beam time to the start pose of the tube, its
+    //# odometry error over that interval being part of its inflation.
     fn place_rays(&mut self, scanner: &Scanner, start: LocalPose, end: LocalPose) {
         let steps = i64::try_from(self.count.saturating_sub(1).max(1)).unwrap_or(1);
         let (from, to) = (mount_um(scanner, start), mount_um(scanner, end));
@@ -162,6 +165,8 @@ impl<const B: usize> Sweep<B> {
         for index in 0..self.count {
             let range = match self.beams.get(index) {
                 Some(Beam::Hit(range)) => i32::from(*range),
+                //= spec/input.md#input-02
+                //# A too-near beam MUST count as a return at the minimum range of its scanner.
                 Some(Beam::TooNear) => minimum,
                 _ => continue,
             };
@@ -177,6 +182,9 @@ impl<const B: usize> Sweep<B> {
             if near {
                 self.join_last();
             }
+            //= spec/guard.md#guard-15
+            //# A return MUST be inflated by no less than its own lateral beam gap, range times angle to the
+            //# neighbouring beam.
             let gap = u64::from(range.unsigned_abs())
                 .saturating_mul(increment_urad)
                 .div_ceil(1_000_000);

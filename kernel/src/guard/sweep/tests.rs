@@ -85,6 +85,10 @@ fn neighbours_on_one_surface_are_joined_and_others_are_not() {
     assert_eq!(joined, [true, true, true, true, true, false, false, false]);
 }
 
+//= spec/memory.md#memory-03
+//= type=test
+//# A remembered hit MUST NOT be replaced by a new return unless the inflation of that return covers the error disc of
+//# the hit.
 #[test]
 fn a_return_shows_a_place_only_on_the_beams_beside_it() {
     let sweep = scan(|angle| match angle {
@@ -158,6 +162,13 @@ fn an_upside_down_scanner_sees_the_same_world() {
     assert_eq!(sweep.look_at(place(200, 2000), 20, 20), Sight::LookedPast);
 }
 
+//= spec/memory.md#memory-06
+//= type=test
+//# A cell MUST be unknown unless its centre was inside the visible region of a usable scan or the area cleared at
+//# start.
+//= spec/input.md#input-03
+//= type=test
+//# The ray of an invalid beam MUST leave the space it crosses unknown.
 #[test]
 fn seen_space_ends_at_returns_and_leaves_shadows_unknown() {
     let sweep = scan(|angle| match angle {
@@ -173,4 +184,43 @@ fn seen_space_ends_at_returns_and_leaves_shadows_unknown() {
     assert!(!seen.is_known(place(200, 2700)), "behind the far returns");
     assert!(!seen.is_known(place(450, 1000)), "on invalid beams");
     assert!(!seen.is_known(place(1800, 500)), "behind the scanner");
+}
+
+//= spec/guard.md#guard-16
+//= type=test
+//# Every beam MUST be moved from the robot's pose at its own beam time to the start pose of the tube, its odometry error
+//# over that interval being part of its inflation.
+#[test]
+fn every_beam_is_placed_from_the_pose_of_its_own_time() {
+    let mut setup = scanner();
+    (setup.x, setup.y) = (Length::from_mm(300), Length::from_mm(-100));
+    let beams = [Beam::Hit(2000); 181];
+    // 80 mm ahead and 6 degrees to the left during the sweep.
+    let (ahead, left) = (0.08_f64, 6_f64.to_radians());
+    let end = LocalPose {
+        x_um: 80_000,
+        y_um: 0,
+        heading: degrees(6),
+    };
+    let mut sweep = Sweep::<181>::default();
+    sweep.place(
+        &setup,
+        RULES,
+        &beams,
+        Instant::from_us(1),
+        (LocalPose::default(), end),
+        Odometer::default(),
+    );
+    assert_eq!(sweep.points().len(), 181);
+    for (index, point) in sweep.points().iter().enumerate() {
+        let part = index as f64 / 180.0;
+        let (sin, cos) = (left * part).sin_cos();
+        let (mount_x, mount_y) = (0.3 * cos + 0.1 * sin, 0.3 * sin - 0.1 * cos);
+        let bearing = (index as f64 - 90.0).to_radians() + left * part;
+        let x = ahead * part + mount_x + 2.0 * bearing.cos();
+        let y = mount_y + 2.0 * bearing.sin();
+        let off = (f64::from(point.x_mm) - x * 1e3).hypot(f64::from(point.y_mm) - y * 1e3);
+        // Half a millimetre of storing along each axis, and the arc of the scanner for its chord.
+        assert!(off < 1.5, "beam {index}: {off} mm");
+    }
 }

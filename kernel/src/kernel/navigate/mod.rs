@@ -1,29 +1,30 @@
 //! `navigate`: the Dynamic Window Approach proposes, the guard disposes.
 //!
-//! A [`Navigator`] is a [`Kernel`] with a planning grid and a planner. It follows a [`Route`]
+//! A [`Navigator`] is a [`Kernel`] with a planner. It follows a [`Route`]
 //! through via points to a goal: each tick the planner lists at most eight commands, the
 //! guard certifies the first that it can, and when it can certify none the robot brakes.
 //! Nothing in here is trusted: a bug can stop the robot, or send it the wrong way, but
 //! every motion passes the same guard, window and stop logic as anybody else's.
 
+mod localise;
 mod pilot;
 mod progress;
 mod proposal;
 mod route;
 
+pub use localise::Localiser;
 pub use progress::{Blocked, Obstruction, Progress, ProgressRules};
-pub use route::{Destination, Route, Via};
+pub use route::{Destination, Route, VIA_MAX, Via};
 
 use super::Kernel;
 use crate::checked::ConfigError;
 use crate::config::Config;
 use crate::decision::{Action, Decision, Reason};
 use crate::dwa::{Plan, Tuning};
-use crate::grid::{GridError, GridRules, RollingGrid};
 use crate::guard::Verdict;
 use crate::input::{Inputs, Reading};
 use crate::stop::Mode;
-use crate::time::{Duration, Instant};
+use crate::time::Instant;
 use pilot::{Attempt, Pilot};
 use progress::Watch;
 use route::Course;
@@ -33,8 +34,6 @@ use route::Course;
 pub struct Planning {
     /// The planner's preferences.
     pub tuning: Tuning,
-    /// The planning grid.
-    pub grid: GridRules,
     /// When a robot that moves but comes no nearer gives up.
     pub progress: ProgressRules,
 }
@@ -45,8 +44,6 @@ pub struct Planning {
 pub enum NavigatorError {
     /// The kernel refuses the robot.
     Config(ConfigError),
-    /// The grid refuses its rules.
-    Grid(GridError),
     /// A preference of the planner is not finite or out of its range, or giving up takes no time.
     Planning,
 }
@@ -67,39 +64,32 @@ pub struct Navigation {
     pub plan: Option<Plan>,
 }
 
-/// A kernel that drives to goals, with a planning grid of `W` × `H` cells around the robot.
+/// A kernel that drives to goals, hardly larger than a [`Kernel`].
 ///
-/// About `2 · W · H` bytes more than a [`Kernel`].
+/// The planner sees the points that the guard sees, with their inflation. A map of the
+/// surroundings is the caller's: [`crate::grid`] has one that rolls with the robot.
 #[derive(Clone, Debug)]
-pub struct Navigator<const S: usize, const B: usize, const M: usize, const W: usize, const H: usize>
-{
+pub struct Navigator<const S: usize, const B: usize, const M: usize> {
     kernel: Kernel<S, B, M>,
     planning: Planning,
-    grid: RollingGrid<W, H>,
-    /// Stamp of the newest scan of each scanner in the grid.
-    mapped: [Option<Instant>; S],
     course: Option<Course>,
     watch: Watch,
     /// When a latched stop was last released; older routes are void.
     restarted: Instant,
 }
 
-impl<const S: usize, const B: usize, const M: usize, const W: usize, const H: usize>
-    Navigator<S, B, M, W, H>
-{
+impl<const S: usize, const B: usize, const M: usize> Navigator<S, B, M> {
     /// A navigator for the robot of `config`, latched until its first reset.
     ///
     /// # Errors
-    /// The first rule of robot, grid or planning that is broken.
+    /// The first rule of robot or planning that is broken.
     pub fn new(config: Config<S>, planning: Planning) -> Result<Self, NavigatorError> {
         if !(planning.tuning.is_valid() && planning.progress.is_valid()) {
             return Err(NavigatorError::Planning);
         }
         Ok(Self {
             kernel: Kernel::new(config).map_err(NavigatorError::Config)?,
-            grid: RollingGrid::new(planning.grid).map_err(NavigatorError::Grid)?,
             planning,
-            mapped: [None; S],
             course: None,
             watch: Watch::default(),
             restarted: Instant::default(),
@@ -112,10 +102,9 @@ impl<const S: usize, const B: usize, const M: usize, const W: usize, const H: us
     /// robot. Together with a command in `inputs` it contradicts itself, and the robot brakes.
     ///
     /// # Bound
-    /// As [`Kernel::step`] with eight motions instead of ten, plus one plan and at most one
-    /// grid update per scanner; no allocation.
+    /// As [`Kernel::step`] with eight motions instead of ten, plus two plans; no allocation.
     /// # Source
-    /// spec/ NAV, GRID; Loh 2018, Alg. 4.1.
+    /// spec/ NAV; Loh 2018, Alg. 4.1.
     pub fn step(
         &mut self,
         inputs: &Inputs<'_>,
@@ -127,7 +116,6 @@ impl<const S: usize, const B: usize, const M: usize, const W: usize, const H: us
         if before == Mode::Latched && self.kernel.stop.mode == Mode::Running {
             self.restarted = tick.now;
         }
-        self.map();
         //= spec/navigate.md#nav-06
         //# A tick without a route MUST NOT follow the route of an earlier tick.
         let Some(route) = route else {
@@ -190,50 +178,9 @@ impl<const S: usize, const B: usize, const M: usize, const W: usize, const H: us
         (route.stamp <= self.restarted).then_some(Reason::CommandMissing)
     }
 
-    /// Enters into the grid what memory has accepted since.
-    fn map(&mut self) {
-        let Some(newest) = self.kernel.track.newest() else {
-            return;
-        };
-        let pose = newest.pose;
-        let scanners = &self.kernel.config.config().scanners;
-        for ((channel, setup), mapped) in self
-            .kernel
-            .channels
-            .iter()
-            .zip(scanners)
-            .zip(&mut self.mapped)
-        {
-            let Some(setup) = setup else { continue };
-            let Some(stamp) = channel
-                .accepted
-                .filter(|_| channel.accepted == channel.beams_stamp && !channel.pending)
-                .filter(|stamp| mapped.is_none_or(|before| *stamp > before))
-            else {
-                continue;
-            };
-            let middle = Duration::from_us(setup.scan_duration.as_us() / 2);
-            let then = self.kernel.track.world_pose_at(stamp.plus(middle));
-            let beams = channel.beams.get(..usize::from(setup.beams));
-            if let (Some(then), Some(beams)) = (then, beams) {
-                // The window follows the robot; a scan that the grid refuses is one it cannot
-                // place, and the planner does without.
-                let _ = self.grid.update(&then, setup, beams);
-            }
-            *mapped = Some(stamp);
-        }
-        let _ = self.grid.follow(&pose);
-    }
-
     /// The kernel underneath.
     #[must_use]
     pub const fn kernel(&self) -> &Kernel<S, B, M> {
         &self.kernel
-    }
-
-    /// The planning grid in the odometry frame.
-    #[must_use]
-    pub const fn grid(&self) -> &RollingGrid<W, H> {
-        &self.grid
     }
 }

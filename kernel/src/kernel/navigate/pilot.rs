@@ -6,7 +6,7 @@ use super::{Planning, proposal};
 use crate::decision::{Action, Reason};
 use crate::dwa::{self, Plan};
 use crate::guard::{BodyPoint, Verdict};
-use crate::input::Odometry;
+use crate::input::{Odometry, Pose};
 use crate::kernel::{Kernel, Outcome, Tick};
 use crate::window;
 
@@ -16,6 +16,14 @@ pub(super) struct Pilot<'a, const S: usize, const B: usize, const M: usize> {
     pub planning: &'a Planning,
     pub course: &'a mut Option<Course>,
     pub watch: &'a mut Watch,
+}
+
+/// Where the robot is.
+pub(super) struct Here {
+    /// The newest odometry.
+    pub odometry: Odometry,
+    /// Its pose in the frame of the route.
+    pub pose: Pose,
 }
 
 /// What the caller learns besides the decision.
@@ -51,21 +59,25 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
         let Some(odometry) = self.kernel.track.newest().copied() else {
             return (self.brake(Reason::OdometryMissing, tick), Attempt::held());
         };
-        let course = Course::of(*self.course, route, &odometry.pose);
+        let Some(pose) = route.locate(&odometry.pose) else {
+            return (self.brake(Reason::CommandMalformed, tick), Attempt::held());
+        };
+        let here = Here { odometry, pose };
+        let course = Course::of(*self.course, route, &pose);
         if self.course.is_none_or(|before| before.id != course.id) {
             *self.watch = Watch::default();
         }
         *self.course = Some(course);
-        let distance_m = course.straight(route, &odometry.pose).distance_m;
+        let distance_m = course.straight(route, &pose).distance_m;
         let rules = &self.planning.progress;
         //= spec/navigate.md#nav-11
         //# A robot that moves for the given time without coming nearer to its next target MUST stop until it gets another route.
         if self.watch.has_given_up(rules, course.next, distance_m) {
             return self.blocked(tick, Obstruction::NoProgress, None, None);
         }
-        let plan = self.steer(route, &course, &odometry, tick);
+        let plan = self.steer(route, &course, &here, tick);
         match plan.outcome {
-            dwa::Outcome::Moving => self.dispose(plan, route, &odometry, tick, course.next),
+            dwa::Outcome::Moving => self.dispose(plan, route, &here, tick, course.next),
             dwa::Outcome::Arrived => {
                 self.watch.pause();
                 let mut outcome = self
@@ -84,7 +96,7 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
                 )
             }
             dwa::Outcome::Blocked(point) => {
-                let reason = self.reason(Obstruction::NoWay, route, &odometry);
+                let reason = self.reason(Obstruction::NoWay, route, &here);
                 self.blocked(tick, reason, point.and_then(body_point), Some(plan))
             }
             dwa::Outcome::Malformed => (
@@ -95,19 +107,19 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
     }
 
     /// The plan along the legs of the route, or if that is blocked, straight to the next target.
-    fn steer(&self, route: &Route<'_>, course: &Course, odometry: &Odometry, tick: &Tick) -> Plan {
-        let straight = course.straight(route, &odometry.pose);
-        let mut onward = course.onward(route, &odometry.pose, self.ahead_m());
+    fn steer(&self, route: &Route<'_>, course: &Course, here: &Here, tick: &Tick) -> Plan {
+        let straight = course.straight(route, &here.pose);
+        let mut onward = course.onward(route, &here.pose, self.ahead_m());
         //= spec/navigate.md#nav-09
         //# Via points MUST be passed in their order, all of them before the destination counts as reached.
         if onward.is_reached() && !straight.is_goal {
             // The route comes by its own end: first what lies before it.
             onward = straight;
         }
-        let plan = self.plan(route, odometry, tick, onward);
+        let plan = self.plan(route, here, tick, onward);
         if matches!(plan.outcome, dwa::Outcome::Blocked(_)) && onward != straight {
             // What blocks the leg may be passed on the way to its end.
-            return self.plan(route, odometry, tick, straight);
+            return self.plan(route, here, tick, straight);
         }
         plan
     }
@@ -117,7 +129,7 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
         &mut self,
         plan: Plan,
         route: &Route<'_>,
-        odometry: &Odometry,
+        here: &Here,
         tick: &Tick,
         next: usize,
     ) -> (Outcome, Attempt) {
@@ -134,7 +146,7 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
             if !window::admissible(config, reference, vertex, step) {
                 continue;
             }
-            let verdict = self.kernel.judge(odometry, vertex, tick.now);
+            let verdict = self.kernel.judge(&here.odometry, vertex, tick.now);
             //= spec/navigate.md#nav-01
             //# Every set point of the navigator that is not a braking one MUST be certified by the guard in the same tick.
             if verdict.refusal.is_none() {
@@ -157,7 +169,7 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
             }) => (Obstruction::Guard(refusal), point),
             _ => (Obstruction::NoWay, None),
         };
-        let reason = self.reason(reason, route, odometry);
+        let reason = self.reason(reason, route, here);
         let (mut outcome, blocked) = self.blocked(tick, reason, point, Some(plan));
         outcome.verdict = attempt.refusal;
         attempt.progress = blocked.progress;
@@ -165,8 +177,8 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
     }
 
     /// `reason`, unless the destination itself is taken: that tells the caller more.
-    fn reason(&self, reason: Obstruction, route: &Route<'_>, odometry: &Odometry) -> Obstruction {
-        if self.is_occupied(route, &odometry.pose) {
+    fn reason(&self, reason: Obstruction, route: &Route<'_>, here: &Here) -> Obstruction {
+        if self.is_occupied(route, &here.pose) {
             Obstruction::GoalOccupied
         } else {
             reason

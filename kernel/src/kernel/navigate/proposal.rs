@@ -3,7 +3,7 @@
 //! The margins follow the guard's, so that it does not refuse what the planner proposes: a
 //! point carries its own inflation, and the outline the terms of the motion ([`crate::dwa`]).
 
-use super::pilot::Pilot;
+use super::pilot::{Here, Pilot};
 use super::route::{Route, Sight, radians};
 use crate::checked::KernelConfig;
 use crate::config::{Config, Kinematics};
@@ -35,13 +35,8 @@ const FILL_MAX: u32 = 28;
 
 impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
     /// Plans one step towards the target in `sight`.
-    pub(super) fn plan(
-        &self,
-        route: &Route<'_>,
-        odometry: &Odometry,
-        tick: &Tick,
-        sight: Sight,
-    ) -> Plan {
+    pub(super) fn plan(&self, route: &Route<'_>, here: &Here, tick: &Tick, sight: Sight) -> Plan {
+        let odometry = &here.odometry;
         let mut in_flight = [dwa::Velocity::default(); VERTICES_MAX];
         let count = self.in_flight(odometry, &mut in_flight);
         let config = &self.kernel.config;
@@ -54,7 +49,7 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
             tuning: self.planning.tuning,
             velocity: velocity(self.kernel.pipeline.last().twist),
             in_flight: in_flight.get(..count).unwrap_or(&[]),
-            goal: goal(route, odometry, sight),
+            goal: goal(route, &here.pose, sight),
         };
         // A point in the critical zone stops the robot, whatever is known of its error.
         let zone_m = metres(config.config().zone.side) + ZONE_SLACK_M - margin.fixed_m;
@@ -104,7 +99,7 @@ impl<const S: usize, const B: usize, const M: usize> Pilot<'_, S, B, M> {
     }
 
     /// Whether a known point lies so near to the destination that no pose within its tolerance
-    /// is free, whatever the heading.
+    /// is free, whatever the heading; `pose` in the route's frame.
     pub(super) fn is_occupied(&self, route: &Route<'_>, pose: &Pose) -> bool {
         let [x, y] = route.goal_seen(pose);
         let inscribed = Footprint::of(self.kernel.config.config()).inscribed_m();
@@ -190,9 +185,9 @@ fn seconds(span: Duration) -> f64 {
 fn limits<const S: usize>(config: &KernelConfig<S>, age: Duration, elapsed: Duration) -> Limits {
     let plain = config.config();
     let dynamics = &config.tube().dynamics;
-    let (own, turning) = (&plain.limits, &config.tube().dynamics.angular_braking);
+    let own = &plain.limits;
     let braking = u64::from(own.braking.as_um_per_s2()).min(dynamics.braking);
-    let angular = u64::from(own.angular_braking.as_urad_per_s2()).min(*turning);
+    let angular = u64::from(own.angular_braking.as_urad_per_s2()).min(dynamics.angular_braking);
     Limits {
         speed_mps: f64::from(own.speed_forward.as_um_per_s()) * MICRO,
         acceleration_mps2: f64::from(own.acceleration.as_um_per_s2()) * MICRO,
@@ -248,10 +243,10 @@ impl Footprint {
     }
 }
 
-fn goal(route: &Route<'_>, odometry: &Odometry, sight: Sight) -> Goal {
+fn goal(route: &Route<'_>, pose: &Pose, sight: Sight) -> Goal {
     let end = &route.goal;
     let heading = end.heading.filter(|_| sight.is_goal).map(|heading| {
-        let turn = heading.minus(odometry.pose.heading);
+        let turn = heading.minus(pose.heading);
         radians(BinaryAngle::from_counts(turn.cast_unsigned()))
     });
     let angle = f64::from(end.heading_tolerance) * (PI / 2_147_483_648.0);

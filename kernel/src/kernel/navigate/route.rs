@@ -1,5 +1,6 @@
 //! Routes: via points to pass, a destination to stop at, and which of them comes next.
 
+use crate::convert::{Round, round};
 use crate::input::Pose;
 use crate::time::Instant;
 use crate::units::{BinaryAngle, Length};
@@ -12,10 +13,12 @@ const PASSED_WITHIN: f64 = 3.0;
 const CUT: f64 = 3.0;
 /// How near a point that is only steered for may come, m.
 const STEERING_TOLERANCE_M: f64 = 1e-3;
+/// Most via points of a route: a tick looks at all of them.
+pub const VIA_MAX: usize = 1024;
 /// µm per metre.
 const MICRO: f64 = 1e6;
 
-/// A point to pass, odometry frame.
+/// A point to pass, frame of the route.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Via {
     /// Position along x, µm.
@@ -26,7 +29,7 @@ pub struct Via {
     pub tolerance: Length,
 }
 
-/// Where to come to rest, odometry frame.
+/// Where to come to rest, frame of the route.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Destination {
     /// Position along x, µm.
@@ -44,16 +47,19 @@ pub struct Destination {
 /// An order: pass the via points in turn, then stop at the destination.
 ///
 /// Handed in afresh with every tick; nothing of it is kept but how far it has come.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Route<'a> {
     /// When it was ordered. A route ordered before the last release of a latched stop is void.
     pub stamp: Instant,
     /// Another id starts at the first via point.
     pub id: u32,
-    /// Via points in their order; any number.
+    /// Via points in their order, at most [`VIA_MAX`].
     pub via: &'a [Via],
     /// Where it ends.
     pub goal: Destination,
+    /// Pose of the odometry frame in the route's frame (REP 105: `map` to `odom`), anew in every
+    /// tick; the default for a route in the odometry frame itself. See [`super::Localiser`].
+    pub odometry_frame: Pose,
 }
 
 /// How far a route has come.
@@ -88,10 +94,28 @@ impl Sight {
 }
 
 impl Route<'_> {
-    /// Whether all tolerances of the next targets can be met: positive, the angle below half a turn.
+    /// The robot's pose in the route's frame; `None` if it is too far away for its numbers.
+    pub(super) fn locate(&self, pose: &Pose) -> Option<Pose> {
+        //= spec/navigate.md#nav-13
+        //# A route MUST be followed at the robot's pose in the frame of the route.
+        let frame = &self.odometry_frame;
+        let (sin, cos) = libm::sincos(radians(frame.heading));
+        let (x, y) = (pose.x_um as f64, pose.y_um as f64);
+        let shifted = |from: i64, by: f64| from.checked_add(round(by, Round::Nearest)?);
+        Some(Pose {
+            x_um: shifted(frame.x_um, cos * x - sin * y)?,
+            y_um: shifted(frame.y_um, sin * x + cos * y)?,
+            heading: frame.heading.plus(pose.heading),
+        })
+    }
+
+    /// Whether it is short enough and its tolerances can be met: positive, the angle below half a turn.
+    /// # Bound
+    /// O(via points).
     pub(super) fn is_valid(&self) -> bool {
         let goal = &self.goal;
-        goal.tolerance > Length::ZERO
+        self.via.len() <= VIA_MAX
+            && goal.tolerance > Length::ZERO
             && (goal.heading.is_none() || (1..1 << 31).contains(&goal.heading_tolerance))
             && self.via.iter().all(|via| via.tolerance > Length::ZERO)
     }

@@ -1,7 +1,7 @@
 //! Gate, loss and recovery, a full state, contradicted markers, duplicates.
 
 use super::{Drive, Small, noise, small, verdicts};
-use crate::marker::{Health, Increment, MarkerFilter, Pose2, Sighting, Verdict};
+use crate::marker::{Health, Increment, MarkerEkf, MarkerFilter, Pose2, Sighting, Verdict};
 use crate::marker::{linear, model};
 use crate::time::Duration;
 use std::vec;
@@ -125,13 +125,96 @@ fn lost_after_a_second_of_rejections() {
 #[test]
 fn rare_outliers_do_not_add_up_to_being_lost() {
     let mut drive = mapped();
-    for _ in 0..20 {
-        for _ in 0..12 {
-            drive.step(Increment::default());
-        }
-        let seen = [drive.sees(1, shifted(LEFT, 1.0, 0.0))];
-        drive.show(&seen);
+    for round in 0..20 {
+        wait(&mut drive, 41);
+        // No two of them agree.
+        let seen = [drive.sees(1, shifted(LEFT, 1.0 + f64::from(round), 0.0))];
+        assert_eq!(verdicts(&drive.show(&seen)), [Verdict::Gated]);
+        assert_eq!(drive.filter.health(), Health::Tracking, "round {round}");
     }
+    // Nor do those between which something fits.
+    for _ in 0..20 {
+        for away in [1.0, 2.0, 3.0, 0.0] {
+            wait(&mut drive, 10);
+            let seen = [drive.sees(1, shifted(LEFT, away, 0.0))];
+            drive.show(&seen);
+            assert_eq!(drive.filter.health(), Health::Tracking);
+        }
+    }
+}
+
+/// Cycles of 50 ms at rest.
+fn wait(drive: &mut Drive<Small>, cycles: u32) {
+    for _ in 0..cycles {
+        drive.step(Increment::default());
+    }
+}
+
+#[test]
+fn a_slow_camera_is_lost_too() {
+    let mut drive = mapped();
+    for round in 1..=5 {
+        wait(&mut drive, 20);
+        let seen = [drive.sees(1, shifted(LEFT, f64::from(round), 0.0))];
+        drive.show(&seen);
+        let lost = drive.filter.health() != Health::Tracking;
+        assert_eq!(lost, round == 5, "after {round} images, one a second");
+    }
+}
+
+/// One image cannot say ten times that a marker has moved, nor eight times that the robot has.
+#[test]
+fn an_id_that_is_read_repeatedly_in_one_frame_says_nothing() {
+    let mut drive = Drive::new(small(true));
+    for _ in 0..5 {
+        let seen = [drive.sees(1, LEFT), drive.sees(2, RIGHT)];
+        drive.look(&seen);
+    }
+    for good_first in [true, false] {
+        let mut seen = vec![drive.sees(1, shifted(LEFT, 1.5, 0.0)); 11];
+        seen.push(drive.sees(2, RIGHT));
+        seen.insert(if good_first { 0 } else { 11 }, drive.sees(1, LEFT));
+        for _ in 0..12 {
+            let report = drive.look(&seen);
+            assert_eq!(report.count(Verdict::Fused), 2);
+            assert_eq!(report.count(Verdict::Gated), 11);
+        }
+        let gone = [
+            vec![drive.sees(1, shifted(LEFT, 1.5, 0.0)); 11],
+            vec![drive.sees(2, RIGHT)],
+        ];
+        for _ in 0..12 {
+            assert_eq!(drive.look(&gone.concat()).count(Verdict::Removed), 0);
+        }
+    }
+    let before = drive.filter.pose();
+    let elsewhere = Pose2::new(0.5, 0.5, 0.0);
+    let shown = |at: Pose2, id| Sighting::pose(id, elsewhere.sees(&at), noise());
+    let twice = [vec![shown(LEFT, 1); 8], vec![shown(RIGHT, 2); 8]].concat();
+    for _ in 0..40 {
+        assert!(!drive.look(&twice).relocated);
+    }
+    assert_eq!(drive.filter.pose(), before);
+    assert!(matches!(drive.filter.health(), Health::Lost(_)));
+}
+
+/// Whoever is met first by an outlier is forgotten, and the robot stays where it is.
+#[test]
+fn a_marker_that_was_learned_from_an_outlier_does_not_move_the_robot() {
+    let mut drive = Drive::new(small(true));
+    let seen = [drive.sees(1, shifted(LEFT, 1.5, 0.0))];
+    assert_eq!(verdicts(&drive.look(&seen)), [Verdict::Added]);
+    let good = [drive.sees(1, LEFT)];
+    for expected in [
+        Verdict::Gated,
+        Verdict::Gated,
+        Verdict::Removed,
+        Verdict::Added,
+    ] {
+        assert_eq!(verdicts(&drive.look(&good)), [expected]);
+    }
+    assert!(drive.filter.pose().distance_m(&drive.truth) < 1e-9);
+    assert!(drive.filter.marker(1).unwrap().pose.distance_m(&LEFT) < 1e-9);
     assert_eq!(drive.filter.health(), Health::Tracking);
 }
 
@@ -250,6 +333,19 @@ fn new_markers_wait_while_the_pose_is_in_doubt() {
     assert_eq!(verdicts(&drive.look(&new)), [Verdict::Added]);
 }
 
+#[test]
+fn it_takes_as_much_memory_as_is_said() {
+    let said = |n: usize, m: usize| 72 * n * n + 144 * n + 24 * m + 4096;
+    let took = [
+        (size_of::<MarkerEkf<1, 1>>(), said(1, 1)),
+        (size_of::<MarkerEkf<20, 64>>(), said(20, 64)),
+        (size_of::<MarkerEkf<60, 1000>>(), said(60, 1000)),
+    ];
+    for (took, said) in took {
+        assert!(took <= said && took + 1024 > said, "{took} of {said}");
+    }
+}
+
 //= spec/ekf.md#ekf-11
 //= type=test
 //# When the state is full, a new marker MUST be refused unless a tentative one that was not seen for five seconds can make room.
@@ -303,6 +399,29 @@ fn a_marker_that_was_moved_goes_and_comes_back() {
         [Verdict::Added, Verdict::Fused]
     );
     assert!(drive.filter.marker(1).unwrap().pose.distance_m(&moved) < 0.05);
+}
+
+/// Cameras that never see two markers at once tell as much.
+#[test]
+fn a_marker_that_was_moved_goes_when_each_camera_sees_one() {
+    let mut drive = Drive::new(small(true));
+    for _ in 0..5 {
+        let seen = [drive.sees(1, LEFT), drive.sees(2, RIGHT)];
+        drive.look(&seen);
+    }
+    let moved = shifted(LEFT, 0.7, 0.0);
+    for count in 1..=10 {
+        drive.step(Increment::default());
+        let (one, other) = ([drive.sees(1, moved)], [drive.sees(2, RIGHT)]);
+        let expected = if count < 10 {
+            Verdict::Gated
+        } else {
+            Verdict::Removed
+        };
+        assert_eq!(verdicts(&drive.show(&one)), [expected], "image {count}");
+        assert_eq!(verdicts(&drive.show_by(1, &other)), [Verdict::Fused]);
+    }
+    assert_eq!(drive.filter.health(), Health::Tracking);
 }
 
 #[test]

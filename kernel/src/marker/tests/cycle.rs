@@ -103,6 +103,61 @@ fn nothing_corrects_before_the_first_odometry() {
     assert_eq!(report.verdict, FrameVerdict::AwaitsOdometry);
 }
 
+/// A slow camera beside fast odometry: the way back is the one that was driven.
+#[test]
+fn late_images_are_moved_along_the_way_that_was_driven() {
+    let mut filter = small(false);
+    filter.add_mapped(1, MARKER).unwrap();
+    let mut drive = Drive::new(filter);
+    let mut truths = std::vec::Vec::new();
+    for step in 0..30 {
+        truths.push((drive.now, drive.truth));
+        drive.now = drive.now.plus(Duration::from_ms(10));
+        // Speeding up and swerving, so that no single motion tells where it was.
+        let part = f64::from(step) / 30.0;
+        let increment = Increment::arc(0.01 * part, 0.05 * (part - 0.5));
+        drive.truth = drive.truth.then(&increment.as_pose());
+        assert_eq!(
+            drive.filter.predict(drive.now, &increment),
+            Prediction::Done
+        );
+    }
+    for (camera, late) in (0..).zip([10, 9, 3, 1]) {
+        let (stamp, there) = truths[truths.len() - late];
+        let seen = [Sighting::pose(1, there.sees(&MARKER), noise())];
+        let report = drive.filter.correct(&frame(camera, stamp, &seen));
+        assert_eq!(report.verdict, FrameVerdict::Used);
+        let innovation = report.record(0).unwrap().innovation;
+        let off = innovation
+            .iter()
+            .fold(0.0_f64, |most, part| most.max(part.abs()));
+        assert!(off < 1e-9, "{late} samples late: {innovation:?}");
+    }
+}
+
+#[test]
+fn frames_beyond_the_remembered_motions_are_refused() {
+    let mut drive = Drive::new(small(true));
+    let seen = [drive.sees(1, MARKER)];
+    for _ in 0..40 {
+        drive.now = drive.now.plus(Duration::from_ms(1));
+        let done = drive.filter.predict(drive.now, &Increment::arc(0.001, 0.0));
+        assert_eq!(done, Prediction::Done);
+    }
+    let at = |ms: i64| {
+        let span = Duration::from_ms(ms.unsigned_abs());
+        if ms < 0 {
+            drive.now.minus(span)
+        } else {
+            drive.now.plus(span)
+        }
+    };
+    let mut verdict = |ms| drive.filter.correct(&frame(0, at(ms), &seen)).verdict;
+    assert_eq!(verdict(-17), FrameVerdict::Stale);
+    assert_eq!(verdict(17), FrameVerdict::Future);
+    assert_eq!(verdict(-16), FrameVerdict::Used);
+}
+
 /// A camera between two odometry samples sees the marker from farther on.
 #[test]
 fn frames_are_moved_to_the_last_odometry() {

@@ -1,4 +1,7 @@
-//! The textbook filter with dense matrices: an independent computation of the same numbers.
+//! The same filter with dense matrices: an independent computation of the same numbers.
+//!
+//! Errors are motions of the plane about the origin, taken from the matrix exponential; the
+//! kernel's are about an anchor for each pose. What both say of x, y and heading must agree.
 
 use crate::marker::{Increment, Pose2, Sighting, wrap};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -36,11 +39,26 @@ pub(super) fn pose(v: Vector3<f64>) -> Pose2 {
     Pose2::new(v[0], v[1], v[2])
 }
 
+/// The pose moved with the plane by the motion `error`.
+fn displaced(at: &Pose2, error: Vector3<f64>) -> Pose2 {
+    let [x, y, turn] = error.into();
+    let motion = Matrix3::new(0.0, -turn, x, turn, 0.0, y, 0.0, 0.0, 0.0).exp();
+    let to = motion * Vector3::new(at.x_m, at.y_m, 1.0);
+    Pose2::new(to[0], to[1], wrap(at.heading_rad + turn))
+}
+
+/// Derivative by the error of the pose at which `f` is told to look.
+fn by_error(f: impl Fn(&Pose2) -> Pose2, at: &Pose2) -> Matrix3<f64> {
+    derivative(|e| vector(&f(&displaced(at, e))), Vector3::zeros())
+}
+
 impl Dense {
     pub(super) fn new(start: &Pose2, variances: [f64; 3]) -> Self {
+        let count = by_error(|p| *p, start).try_inverse().unwrap();
+        let own = count * Matrix3::from_diagonal(&Vector3::from(variances)) * count.transpose();
         Self {
             mean: DVector::from_row_slice(vector(start).as_slice()),
-            covariance: DMatrix::from_diagonal(&DVector::from_row_slice(&variances)),
+            covariance: DMatrix::from_row_slice(3, 3, own.as_slice()),
             ids: Vec::new(),
         }
     }
@@ -51,11 +69,8 @@ impl Dense {
 
     pub(super) fn predict(&mut self, increment: &Increment, variances: [f64; 3]) {
         let move_by = Pose2::new(increment.forward_m, increment.left_m, increment.turn_rad);
-        let n = self.mean.len();
         let at = self.block(0);
-        let mut f = DMatrix::identity(n, n);
-        let jacobian = derivative(|v| vector(&pose(v).then(&move_by)), at);
-        f.view_mut((0, 0), (3, 3)).copy_from(&jacobian);
+        let after = pose(at).then(&move_by);
         let heading = Pose2::new(0.0, 0.0, at[2]);
         // Errors along, across and in turn; the last one bends the way.
         let noise = derivative(
@@ -69,11 +84,11 @@ impl Dense {
             },
             Vector3::zeros(),
         );
+        let noise = by_error(|p| *p, &after).try_inverse().unwrap() * noise;
         let q = noise * Matrix3::from_diagonal(&Vector3::from(variances)) * noise.transpose();
-        self.covariance = &f * &self.covariance * f.transpose();
+        // A motion of the plane before the step is the same motion after it.
         let mut own = self.covariance.view_mut((0, 0), (3, 3));
         own += q;
-        let after = pose(at).then(&move_by);
         self.mean.rows_mut(0, 3).copy_from(&vector(&after));
     }
 
@@ -82,15 +97,14 @@ impl Dense {
         Some(3 + 3 * at)
     }
 
-    /// A sighting of a marker in the state; `prior` is where it is linearised.
-    pub(super) fn update(&mut self, sighting: &Sighting, prior: &DVector<f64>) {
+    /// A sighting of a marker in the state.
+    pub(super) fn update(&mut self, sighting: &Sighting) {
         let at = self.slot(sighting.id).unwrap();
         let n = self.mean.len();
         let rows = if sighting.heading_rad.is_some() { 3 } else { 2 };
-        let robot: Vector3<f64> = prior.fixed_rows::<3>(0).into_owned();
-        let marker: Vector3<f64> = prior.fixed_rows::<3>(at).into_owned();
-        let h_robot = derivative(|v| vector(&pose(v).sees(&pose(marker))), robot);
-        let h_marker = derivative(|v| vector(&pose(robot).sees(&pose(v))), marker);
+        let (robot, marker) = (pose(self.block(0)), pose(self.block(at)));
+        let h_robot = by_error(|p| p.sees(&marker), &robot);
+        let h_marker = by_error(|p| robot.sees(p), &marker);
         let mut h = DMatrix::zeros(rows, n);
         h.view_mut((0, 0), (rows, 3))
             .copy_from(&h_robot.rows(0, rows));
@@ -102,32 +116,65 @@ impl Dense {
             sighting.y_m,
             sighting.heading_rad.unwrap_or(0.0),
         );
-        let mut innovation = vector(&seen) - vector(&pose(robot).sees(&pose(marker)));
+        let mut innovation = vector(&seen) - vector(&robot.sees(&marker));
         innovation[2] = wrap(innovation[2]);
-        let moved = &self.mean - prior;
-        let rest = innovation.rows(0, rows) - &h * moved;
         let s = &h * &self.covariance * h.transpose() + &r;
         let k = &self.covariance * h.transpose() * s.try_inverse().unwrap();
-        self.mean += &k * rest;
+        let errors = &k * innovation.rows(0, rows);
+        for at in (0..n).step_by(3) {
+            let error = errors.fixed_rows::<3>(at).into_owned();
+            let mended = vector(&displaced(&pose(self.block(at)), error));
+            self.mean.rows_mut(at, 3).copy_from(&mended);
+        }
         let joseph = DMatrix::identity(n, n) - &k * h;
         self.covariance = &joseph * &self.covariance * joseph.transpose() + &k * r * k.transpose();
     }
 
     pub(super) fn append(&mut self, sighting: &Sighting) {
         let n = self.mean.len();
-        let seen = Pose2::new(sighting.x_m, sighting.y_m, sighting.heading_rad.unwrap());
+        let heading = sighting.heading_rad.unwrap_or(0.0);
+        let seen = Pose2::new(sighting.x_m, sighting.y_m, heading);
         let robot = self.block(0);
-        let g = derivative(|v| vector(&pose(v).then(&seen)), robot);
-        let l = derivative(|v| vector(&pose(robot).then(&pose(v))), vector(&seen));
+        let placed = pose(robot).then(&seen);
+        // What moves the robot with the plane moves the marker by the same motion.
+        let g = Matrix3::identity();
+        let l = by_error(|p| *p, &placed).try_inverse().unwrap()
+            * derivative(|v| vector(&pose(robot).then(&pose(v))), vector(&seen));
         let mut grow = DMatrix::zeros(n + 3, n);
         grow.view_mut((0, 0), (n, n)).fill_with_identity();
         grow.view_mut((n, 0), (3, 3)).copy_from(&g);
         self.covariance = &grow * &self.covariance * grow.transpose();
         let mut own = self.covariance.view_mut((n, n), (3, 3));
-        own += l * noise(sighting) * l.transpose();
-        let marker = vector(&pose(robot).then(&seen));
+        let mut noise = noise(sighting);
+        if sighting.heading_rad.is_none() {
+            noise[(2, 2)] = 1e-12;
+        }
+        own += l * noise * l.transpose();
+        let marker = vector(&placed);
         self.mean = DVector::from_iterator(n + 3, self.mean.iter().chain(marker.iter()).copied());
         self.ids.push(sighting.id);
+    }
+
+    /// The heading of a marker may be any.
+    pub(super) fn free_heading(&mut self, id: u16) {
+        let at = self.slot(id).unwrap();
+        let count = by_error(|p| *p, &pose(self.block(at)))
+            .try_inverse()
+            .unwrap();
+        let turn = count.column(2).into_owned();
+        let mut own = self.covariance.view_mut((at, at), (3, 3));
+        own += 10.0 * turn * turn.transpose();
+    }
+
+    /// Covariance of all [x, y, heading].
+    pub(super) fn plain_covariance(&self) -> DMatrix<f64> {
+        let n = self.mean.len();
+        let mut plain = DMatrix::identity(n, n);
+        for at in (0..n).step_by(3) {
+            let by = by_error(|p| *p, &pose(self.block(at)));
+            plain.view_mut((at, at), (3, 3)).copy_from(&by);
+        }
+        &plain * &self.covariance * plain.transpose()
     }
 
     pub(super) fn remove(&mut self, id: u16) {
@@ -143,16 +190,5 @@ impl Dense {
 }
 
 fn noise(sighting: &Sighting) -> Matrix3<f64> {
-    let n = sighting.noise;
-    Matrix3::new(
-        n.xx_m2,
-        n.xy_m2,
-        0.0,
-        n.xy_m2,
-        n.yy_m2,
-        0.0,
-        0.0,
-        0.0,
-        n.heading_rad2,
-    )
+    Matrix3::from(sighting.noise.matrix(true))
 }

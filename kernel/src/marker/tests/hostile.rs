@@ -1,7 +1,7 @@
 //! Whatever comes in, the state stays finite and its covariance symmetric and positive.
 
 use crate::marker::{
-    FilterError, FilterRules, Frame, FrameReport, Increment, MarkerEkf, MarkerFilter,
+    FilterError, FilterRules, Frame, FrameReport, Health, Increment, MarkerEkf, MarkerFilter,
     OdometryNoise, POSITION_MAX_M, Pose2, Prediction, Sighting, SightingNoise, Verdict, linear,
 };
 use crate::time::Instant;
@@ -211,6 +211,35 @@ fn the_robot_cannot_leave_the_filters_range() {
     assert_eq!(filter.pose(), start);
 }
 
+/// From there no odometry is taken any more, so the pose must not pass for one to be trusted.
+#[test]
+fn a_correction_out_of_the_filters_range_is_said() {
+    let start = Pose2::new(POSITION_MAX_M, 0.0, 0.0);
+    let mut filter = Filter::new(FilterRules::default(), start, [0.1; 3]).unwrap();
+    filter
+        .add_mapped(1, Pose2::new(POSITION_MAX_M, 2.0, 3.0))
+        .unwrap();
+    let now = Instant::from_us(1);
+    assert_eq!(filter.predict(now, &Increment::default()), Prediction::Done);
+    let beyond = Pose2::new(POSITION_MAX_M + 0.1, 0.0, 0.0);
+    let seen = beyond.sees(&Pose2::new(POSITION_MAX_M, 2.0, 3.0));
+    let sightings = [Sighting::pose(
+        1,
+        seen,
+        SightingNoise::isotropic(0.01, 0.01),
+    )];
+    let report = filter.correct(&Frame {
+        camera: 0,
+        stamp: now,
+        sightings: &sightings,
+    });
+    assert_eq!(report.count(Verdict::Fused), 1);
+    assert!(filter.pose().x_m > POSITION_MAX_M);
+    assert_eq!(filter.health(), Health::Lost(now));
+    filter.place(start, [0.1; 3]).unwrap();
+    assert_eq!(filter.health(), Health::Tracking);
+}
+
 #[test]
 fn more_sightings_than_a_frame_holds_are_counted() {
     let mut filter = Filter::new(FilterRules::default(), Pose2::default(), [0.1; 3]).unwrap();
@@ -237,69 +266,47 @@ fn rules_and_poses_that_cannot_be_are_refused() {
     let good = FilterRules::default();
     let new = |rules, pose, variances| Filter::new(rules, pose, variances).map(|_| ());
     let origin = Pose2::default();
-    let noise = OdometryNoise {
-        across_m2_per_m: -1.0,
-        ..good.odometry
-    };
-    assert_eq!(
-        new(
-            FilterRules {
-                odometry: noise,
-                ..good
-            },
-            origin,
-            [0.1; 3]
+    let noisy = |odometry| FilterRules { odometry, ..good };
+    let plain = good.odometry;
+    for (rules, error) in [
+        (
+            noisy(OdometryNoise {
+                across_m2_per_m: -1.0,
+                ..plain
+            }),
+            FilterError::OdometryNoise,
         ),
-        Err(FilterError::OdometryNoise)
-    );
-    let noise = OdometryNoise {
-        along_m2_per_m: f64::NAN,
-        ..good.odometry
-    };
-    assert_eq!(
-        new(
-            FilterRules {
-                odometry: noise,
-                ..good
-            },
-            origin,
-            [0.1; 3]
+        (
+            noisy(OdometryNoise {
+                along_m2_per_m: f64::NAN,
+                ..plain
+            }),
+            FilterError::OdometryNoise,
         ),
-        Err(FilterError::OdometryNoise)
-    );
-    assert_eq!(
-        new(
+        (
             FilterRules {
                 gate_pose: f64::NAN,
                 ..good
             },
-            origin,
-            [0.1; 3]
+            FilterError::Gate,
         ),
-        Err(FilterError::Gate)
-    );
-    assert_eq!(
-        new(
+        (
             FilterRules {
                 gate_position: 0.0,
                 ..good
             },
-            origin,
-            [0.1; 3]
+            FilterError::Gate,
         ),
-        Err(FilterError::Gate)
-    );
-    assert_eq!(
-        new(
+        (
             FilterRules {
                 contradictions: 0,
                 ..good
             },
-            origin,
-            [0.1; 3]
+            FilterError::Contradictions,
         ),
-        Err(FilterError::Contradictions)
-    );
+    ] {
+        assert_eq!(new(rules, origin, [0.1; 3]), Err(error), "{rules:?}");
+    }
     assert_eq!(
         new(good, Pose2::new(f64::NAN, 0.0, 0.0), [0.1; 3]),
         Err(FilterError::Pose)
@@ -319,4 +326,125 @@ fn rules_and_poses_that_cannot_be_are_refused() {
     }
     assert_eq!(filter.add_mapped(0, origin), Err(FilterError::Duplicate));
     assert_eq!(filter.add_mapped(9, origin), Err(FilterError::Full));
+}
+
+/// A small generator, the same on every machine.
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self, sides: u64) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 20) % sides
+    }
+
+    /// A number up to `most`: near it, tiny, denormal, zero or in between.
+    fn number(&mut self, most: f64) -> f64 {
+        let unit = self.roll(1 << 30) as f64 / f64::from(1 << 29) - 1.0;
+        let size = [1.0, 1.0, 0.01, 1e-6, 1e-310, 0.0][self.roll(6) as usize];
+        let edge = if self.roll(4) == 0 {
+            1.0_f64.copysign(unit)
+        } else {
+            unit
+        };
+        edge * size * most
+    }
+
+    fn variance(&mut self) -> f64 {
+        [1e-12, 1e-12, 1e-6, 1e-2, 1.0, 1e6][self.roll(6) as usize]
+    }
+
+    fn sighting(&mut self, ids: u64) -> Sighting {
+        let (xx_m2, yy_m2) = (self.variance(), self.variance());
+        let xy_m2 = (xx_m2 * yy_m2).sqrt() * self.number(0.999_999);
+        let noise = SightingNoise {
+            xx_m2,
+            xy_m2,
+            yy_m2,
+            heading_rad2: self.variance(),
+        };
+        Sighting {
+            id: self.roll(ids) as u16,
+            x_m: self.number(1e3),
+            y_m: self.number(1e3),
+            heading_rad: (self.roll(3) > 0).then(|| self.number(1e3)),
+            noise,
+        }
+    }
+}
+
+/// Nothing grows without end: rounding alone once took a pivot to 5e49 here.
+fn check_bounds(filter: &Filter) {
+    let (pivots, _) = filter.covariance.pivots();
+    assert!(pivots.iter().all(|pivot| *pivot < 1e14), "{pivots:?}");
+}
+
+/// Numbers at the edge of what is accepted, for as long as it takes to spoil a filter: without a
+/// gate every sighting is fused, with one the state is full, markers come and go.
+#[test]
+fn a_hundred_thousand_sightings_at_the_edge_leave_a_sound_state() {
+    let most = OdometryNoise {
+        along_m2_per_m: 1.0,
+        across_m2_per_m: 1.0,
+        heading_rad2_per_m: 1.0,
+        heading_rad2_per_rad: 1.0,
+        position_m2_per_sample: 1.0,
+        heading_rad2_per_sample: 1.0,
+    };
+    let plain = FilterRules::default();
+    for (seed, gate, odometry, learn) in [
+        (1, 1e300, most, true),
+        (2, 1e300, plain.odometry, true),
+        (3, plain.gate_pose, most, true),
+        (2604, plain.gate_pose, plain.odometry, true),
+        (5, 1e300, most, false),
+    ] {
+        let rules = FilterRules {
+            gate_pose: gate,
+            gate_position: gate,
+            odometry,
+            learn,
+            ..plain
+        };
+        let mut filter = Filter::new(rules, Pose2::default(), [1e6, 1e-12, 1e6]).unwrap();
+        filter.add_mapped(8, Pose2::new(1e6, -1e6, 3.0)).unwrap();
+        let mut dice = Dice(seed);
+        let (mut now, mut seen) = (1_000_000_u64, 0);
+        // A fifth of the hundred thousand per seed; builds without optimisation get a taste.
+        let enough = if cfg!(debug_assertions) {
+            1_000
+        } else {
+            20_000
+        };
+        while seen < enough {
+            let back = dice.roll(20) == 0;
+            now = if back {
+                now - dice.roll(1_000)
+            } else {
+                now + dice.roll(60_000)
+            };
+            let increment = Increment {
+                forward_m: dice.number(10.0),
+                left_m: dice.number(10.0),
+                turn_rad: dice.number(core::f64::consts::TAU),
+            };
+            let _ = filter.predict(Instant::from_us(now), &increment);
+            let sightings: Vec<Sighting> = (0..dice.roll(18)).map(|_| dice.sighting(9)).collect();
+            let stamp = Instant::from_us(now + dice.roll(10_000) - 5_000);
+            let report = filter.correct(&Frame {
+                camera: dice.roll(3) as u8,
+                stamp,
+                sightings: &sightings,
+            });
+            check_report(&report, &sightings).unwrap();
+            check(&filter).unwrap();
+            check_bounds(&filter);
+            seen += sightings.len();
+            if !filter.pose().is_within(POSITION_MAX_M) {
+                assert!(matches!(filter.health(), Health::Lost(_)), "seed {seed}");
+                filter.place(Pose2::default(), [1e6, 1e6, 1e-12]).unwrap();
+            }
+        }
+    }
 }

@@ -62,8 +62,12 @@ impl<F: MarkerFilter> Drive<F> {
     }
 
     pub(super) fn show(&mut self, sightings: &[Sighting]) -> FrameReport {
+        self.show_by(0, sightings)
+    }
+
+    pub(super) fn show_by(&mut self, camera: u8, sightings: &[Sighting]) -> FrameReport {
         self.filter.correct(&Frame {
-            camera: 0,
+            camera,
             stamp: self.now,
             sightings,
         })
