@@ -179,8 +179,19 @@ impl fmt::Display for DriveError {
         match self.frame {
             Frame::ArcosServer(id) => write!(out, "ARCOS packet 0x{id:02X}: ")?,
             Frame::ArcosCommand(number) => write!(out, "ARCOS command {number}: ")?,
+            // Nobody has said anything: there are no bytes to speak of.
+            Frame::Stream if self.fault == Fault::NoAnswer => {
+                return write!(
+                    out,
+                    "nobody answers; is this the robot's port, at the right speed, and is it on?"
+                );
+            }
             Frame::Stream => write!(out, "stream of bytes: ")?,
-            Frame::Answer(command) => write!(out, "answer to {command:?}: ")?,
+            Frame::Answer(command) => {
+                let line = command.encode();
+                let text = core::str::from_utf8(line.as_slice()).unwrap_or_default();
+                write!(out, "answer to {}: ", text.trim_end())?;
+            }
             Frame::Display => write!(out, "message of the control board: ")?,
             Frame::Group(number) => write!(out, "data group {number}: ")?,
             Frame::Decision => write!(out, "decision: ")?,

@@ -1,7 +1,6 @@
 //! The host's side of the scanner: asks for the stream and turns telegrams into scans.
 
 use std::fmt;
-use std::io;
 
 use haltline::time::Instant;
 use haltline_robots::Scanner as Mount;
@@ -30,6 +29,10 @@ pub enum ScanFault {
     Angles,
     /// Its clock cannot be followed.
     Clock,
+    /// It does not want to stream.
+    Refused,
+    /// The connection is gone.
+    Gone,
 }
 
 impl fmt::Display for ScanFault {
@@ -48,13 +51,21 @@ impl fmt::Display for ScanFault {
                  set `field_of_view_deg` or the scanner"
             ),
             Self::Clock => write!(out, "LMDscandata: time stamps contradict each other"),
+            Self::Refused => write!(
+                out,
+                "the scanner refuses to stream LMDscandata; is it measuring, and does it speak CoLa A?"
+            ),
+            Self::Gone => write!(
+                out,
+                "the connection to the scanner is gone; it is tried again once the robot rests"
+            ),
         }
     }
 }
 
 /// Scanner client.
 pub struct Eye {
-    link: Box<dyn Link>,
+    link: Option<Box<dyn Link>>,
     mount: Mount,
     deframer: Deframer,
     clock: ClockMap,
@@ -66,16 +77,32 @@ impl Eye {
     /// A client that asks for the stream at its first exchange.
     #[must_use]
     pub fn new(link: Box<dyn Link>, mount: Mount) -> Self {
-        let mut unsent = Vec::new();
-        frame_into(cola::STREAM_START, |part| unsent.extend_from_slice(part));
-        Self {
-            link,
+        let mut eye = Self {
+            link: None,
             mount,
             deframer: Deframer::default(),
             clock: ClockMap::default(),
-            unsent,
+            unsent: Vec::new(),
             fault: None,
-        }
+        };
+        eye.reopen(link);
+        eye
+    }
+
+    /// A new connection: nothing is carried over from the one before.
+    pub fn reopen(&mut self, link: Box<dyn Link>) {
+        (self.deframer, self.clock) = (Deframer::default(), ClockMap::default());
+        self.unsent.clear();
+        frame_into(cola::STREAM_START, |part| {
+            self.unsent.extend_from_slice(part)
+        });
+        self.link = Some(link);
+    }
+
+    /// Whether there is a connection.
+    #[must_use]
+    pub const fn is_open(&self) -> bool {
+        self.link.is_some()
     }
 
     /// What was wrong with the newest bad scan, once.
@@ -83,35 +110,44 @@ impl Eye {
         self.fault.take()
     }
 
-    /// Exchanges bytes; appends whole, usable scans.
-    ///
-    /// # Errors
-    /// The scanner is gone.
-    pub fn exchange(&mut self, now: Instant, scans: &mut Vec<RawScan>) -> io::Result<()> {
-        let written = self.link.write(&self.unsent)?;
-        self.unsent.drain(..written);
+    /// Exchanges bytes; appends whole, usable scans. A connection that ends is a fault like others.
+    pub fn exchange(&mut self, now: Instant, scans: &mut Vec<RawScan>) {
+        let Some(link) = &mut self.link else { return };
         let mut heard = Vec::new();
-        self.link.read(&mut heard)?;
+        let written = link.write(&self.unsent);
+        let read = link.read(&mut heard);
+        if let Ok(count) = written {
+            self.unsent.drain(..count);
+        }
         for byte in heard {
-            match self.deframer.push(byte) {
-                None => {}
-                Some(Err(_)) => self.fault = Some(ScanFault::Damaged),
-                Some(Ok(text)) => {
-                    if !text.starts_with("sSN LMDscandata") {
-                        continue;
-                    }
-                    let Some(telegram) = decode_scan(text) else {
-                        self.fault = Some(ScanFault::Unreadable);
-                        continue;
-                    };
-                    match scan(&telegram, &self.mount, &mut self.clock, now) {
-                        Ok(scan) => scans.push(scan),
-                        Err(fault) => self.fault = Some(fault),
-                    }
+            let telegram = match self.deframer.push(byte) {
+                None => continue,
+                Some(Err(_)) => Err(ScanFault::Damaged),
+                Some(Ok(text)) if text.starts_with("sSN LMDscandata") => {
+                    decode_scan(text).ok_or(ScanFault::Unreadable)
                 }
+                Some(Ok(text)) if refuses(text) => Err(ScanFault::Refused),
+                Some(Ok(_)) => continue,
+            };
+            match telegram.and_then(|telegram| scan(&telegram, &self.mount, &mut self.clock, now)) {
+                Ok(scan) => scans.push(scan),
+                Err(fault) => self.fault = Some(fault),
             }
         }
-        Ok(())
+        if written.is_err() || read.is_err() {
+            self.link = None;
+            self.fault = Some(ScanFault::Gone);
+        }
+    }
+}
+
+/// Whether a scanner says no: an error, or an answer that the stream is off.
+fn refuses(text: &str) -> bool {
+    let mut words = text.split(' ');
+    match (words.next(), words.next(), words.next()) {
+        (Some("sFA"), _, _) => true,
+        (Some("sEA"), Some("LMDscandata"), on) => on != Some("1"),
+        _ => false,
     }
 }
 

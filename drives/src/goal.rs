@@ -2,29 +2,25 @@
 
 use std::io;
 
-use haltline::Navigator;
 use haltline::convert::{self, Round};
 use haltline::decision::Decision;
 use haltline::input::Inputs;
-use haltline::kernel::navigate::{Destination, Planning, Route};
+use haltline::kernel::navigate::{Destination, Navigation, Planning, Route};
 use haltline::time::Instant;
-use haltline_robots::{BEAMS, MEMORY, Robot, SCANNERS};
+use haltline_robots::Robot;
 use haltline_scenarios::controller::Controller;
+use haltline_scenarios::math::Pose;
+use haltline_scenarios::navigation::Said;
+use haltline_scenarios::pilot::{RobotNavigator, boxed, said};
 
-/// Cells of the planning grid along each side: 20 m at 0.1 m.
-const CELLS: usize = 200;
 /// The goal counts as reached within this distance and angle.
 const NEAR_M: f64 = 0.15;
 const HEADING_RAD: f64 = 0.1;
-/// Stack on which a navigator is put together before it goes to the heap.
-const BUILDER_STACK: usize = 16 << 20;
-
-type RobotNavigator = Navigator<SCANNERS, BEAMS, MEMORY, CELLS, CELLS>;
-
 struct Goal {
     navigator: Box<RobotNavigator>,
     goal: Destination,
     ordered: Option<Instant>,
+    answer: Option<Navigation>,
 }
 
 /// A controller that drives to `[x, y]`, metres in the odometry frame, and takes the heading there
@@ -53,17 +49,13 @@ pub fn navigate(
         })
     };
     let goal = goal().ok_or_else(|| bad(format!("no goal the kernel can hold: {x_m}, {y_m}")))?;
-    let config = robot.config;
-    let builder = std::thread::Builder::new().stack_size(BUILDER_STACK);
-    let built = builder
-        .spawn(move || RobotNavigator::new(config, Planning::default()).map(Box::new))?
-        .join()
-        .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-    let navigator = built.map_err(|error| bad(format!("the kernel refuses: {error:?}")))?;
+    let navigator = boxed(robot, Planning::default())
+        .map_err(|error| bad(format!("the kernel refuses: {error:?}")))?;
     Ok(Box::new(Goal {
         navigator,
         goal,
         ordered: None,
+        answer: None,
     }))
 }
 
@@ -82,7 +74,14 @@ impl Controller for Goal {
             id: 1,
             via: &[],
             goal: self.goal,
+            ..Route::default()
         });
-        self.navigator.step(inputs, route.as_ref(), now).decision
+        let answer = self.navigator.step(inputs, route.as_ref(), now);
+        self.answer = Some(answer);
+        answer.decision
+    }
+
+    fn said(&self, pose: &Pose, base_us: u64) -> Option<Said> {
+        Some(said(&self.answer?, pose, base_us))
     }
 }

@@ -160,6 +160,9 @@ impl Governor {
     /// - `may_release`: zero really is on the wire and the drive is ready
     pub fn decide(&mut self, decision: &Decision, now: Instant, may_release: bool) -> Setpoint {
         let wanted = Setpoint::new(decision.setpoint);
+        if now < self.since {
+            return self.interrupt(now);
+        }
         if now > decision.expires {
             return self.withhold(now);
         }
@@ -179,7 +182,12 @@ impl Governor {
     }
 
     /// Lets time pass; a new set point if the decision in force has expired or a ramp goes on.
+    ///
+    /// A clock that ran backwards would keep a decision in force until it has caught up: zero at once.
     pub fn tick(&mut self, now: Instant) -> Option<Setpoint> {
+        if now < self.since {
+            return Some(self.interrupt(now));
+        }
         let overdue = self.expires.is_some_and(|expires| now > expires);
         let ramping = self.holding && !self.wire.is_rest();
         if !overdue && !ramping {

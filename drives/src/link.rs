@@ -2,12 +2,16 @@
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::{TcpListener, TcpStream, ToSocketAddrs};
 use std::path::Path;
+use std::time::Duration;
 
-use rustix::fs::{Mode, OFlags};
+use rustix::fs::{FlockOperation, Mode, OFlags};
 use rustix::pty::OpenptFlags;
-use rustix::termios::{self, OptionalActions};
+use rustix::termios::{self, OptionalActions, QueueSelector};
+
+/// How long a robot or a scanner may take to accept a connection.
+pub const CONNECT: Duration = Duration::from_millis(1000);
 
 /// A stream of bytes in both directions.
 pub trait Link {
@@ -54,12 +58,19 @@ impl<S: Read + Write> Link for Stream<S> {
     }
 }
 
-/// Connects to `address`, for instance `127.0.0.1:8101`.
+/// Connects to `address`, for instance `127.0.0.1:8101`, within `most`.
 ///
 /// # Errors
-/// Nobody listens there.
-pub fn tcp(address: &str) -> io::Result<Stream<TcpStream>> {
-    accepted(TcpStream::connect(address)?)
+/// Nobody listens there, or nobody answers in time.
+pub fn tcp(address: &str, most: Duration) -> io::Result<Stream<TcpStream>> {
+    let mut failed = io::Error::new(ErrorKind::NotFound, "no such host");
+    for place in address.to_socket_addrs()? {
+        match TcpStream::connect_timeout(&place, most) {
+            Ok(stream) => return accepted(stream),
+            Err(error) => failed = error,
+        }
+    }
+    Err(failed)
 }
 
 /// A socket somebody has accepted.
@@ -82,13 +93,21 @@ pub fn listen(address: &str) -> io::Result<TcpListener> {
     Ok(listener)
 }
 
-/// Opens a serial line or a pseudo-terminal, raw, 8N1, at `baud`.
+/// Opens a serial line or a pseudo-terminal for this process alone, raw, 8N1, at `baud`. What waited
+/// in it was meant for somebody else and is thrown away.
 ///
 /// # Errors
-/// It does not exist, is no terminal, or does not know the speed.
+/// It does not exist, is no terminal, is held by another process, or does not know the speed.
 pub fn serial(path: &Path, baud: u32) -> io::Result<Stream<File>> {
     let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
     let file = rustix::fs::open(path, flags, Mode::empty())?;
+    // Two hosts on one line would mix their bytes. The lock holds back those that ask for one, the
+    // exclusive mode everybody but root; it ends with the last file on the line.
+    let busy = |_| io::Error::new(ErrorKind::ResourceBusy, "another program holds it");
+    rustix::fs::flock(&file, FlockOperation::NonBlockingLockExclusive).map_err(busy)?;
+    termios::tcgetattr(&file)?;
+    termios::ioctl_tiocexcl(&file)?;
+    termios::tcflush(&file, QueueSelector::IOFlush)?;
     let mut settings = termios::tcgetattr(&file)?;
     settings.make_raw();
     settings.set_speed(baud)?;
@@ -121,7 +140,7 @@ pub fn pseudo_terminal() -> io::Result<(Stream<File>, String)> {
 /// As [`tcp`] and [`serial`]; the message names the port and what to write.
 pub fn open(port: &str, baud: u32) -> io::Result<Box<dyn Link>> {
     let result: io::Result<Box<dyn Link>> = match port.strip_prefix("tcp:") {
-        Some(address) => tcp(address).map(|link| Box::new(link) as Box<dyn Link>),
+        Some(address) => tcp(address, CONNECT).map(|link| Box::new(link) as Box<dyn Link>),
         None => serial(Path::new(port), baud).map(|link| Box::new(link) as Box<dyn Link>),
     };
     result.map_err(|error| {

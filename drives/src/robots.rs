@@ -34,6 +34,22 @@ impl Kind {
         }
     }
 
+    /// The robot that carries the name of one that comes with the project.
+    #[must_use]
+    pub fn of(file: &File) -> Option<Self> {
+        let is = |kind: &Self| File::embedded(kind.file()).is_ok_and(|own| own.name == file.name);
+        [Self::SeekurJr, Self::PsesCar].into_iter().find(is)
+    }
+
+    /// Whether its adapter can steer the robot of `file`.
+    #[must_use]
+    pub const fn fits(self, file: &File) -> bool {
+        matches!(
+            (self, &file.values.kinematics),
+            (Self::SeekurJr, Kinematics::Differential) | (Self::PsesCar, Kinematics::Ackermann(_))
+        )
+    }
+
     /// Name of the robot file that comes with the project.
     #[must_use]
     pub const fn file(self) -> &'static str {
@@ -57,46 +73,77 @@ impl Kind {
     /// - `session`: a number that differs from run to run
     #[must_use]
     pub fn adapter(self, file: &File, session: u32, now: Instant) -> Box<dyn Drive> {
+        self.skidding_adapter(file, 1.0, session, now)
+    }
+
+    /// As [`Kind::adapter`], for a robot whose wheels turn it less than they say.
+    ///
+    /// - `skid`: true turn for each turn of the wheels, in (0, 1]; a steered robot has none
+    #[must_use]
+    pub fn skidding_adapter(
+        self,
+        file: &File,
+        skid: f64,
+        session: u32,
+        now: Instant,
+    ) -> Box<dyn Drive> {
         match self {
-            Self::SeekurJr => Box::new(seekur::Adapter::new(seekur_config(file), now)),
+            Self::SeekurJr => {
+                let config = seekur::Config {
+                    skid,
+                    ..seekur_config(file)
+                };
+                Box::new(seekur::Adapter::new(config, now))
+            }
             Self::PsesCar => Box::new(car::Adapter::new(car_config(file, session), now)),
         }
     }
 
-    /// The emulated robot at `start`, whose drive stops by itself as the file promises.
-    ///
-    /// - `watchdog_s`: told and kept instead of the file's
-    /// - `ignores_watchdog`: a robot that tells a watchdog and does not stop by it
+    /// The emulated robot, whose drive stops by itself as the file promises.
     #[must_use]
-    pub fn emulated(
-        self,
-        file: &File,
-        start: [f64; 3],
-        watchdog_s: Option<f64>,
-        ignores_watchdog: bool,
-        now: Instant,
-    ) -> Box<dyn Robot> {
+    pub fn emulated(self, file: &File, habits: Habits, now: Instant) -> Box<dyn Robot> {
         let silent = &file.values.host_death;
         match self {
             Self::SeekurJr => Box::new(Seekur::new(
                 SeekurModel {
-                    watchdog_ms: milliseconds(watchdog_s.unwrap_or(silent.watchdog_s)),
-                    ignores_watchdog,
+                    watchdog_ms: milliseconds(habits.watchdog_s.unwrap_or(silent.watchdog_s)),
+                    ignores_watchdog: habits.ignores_watchdog,
                     sip_cycle_ms: 20,
                     braking: [silent.braking_mps2, silent.angular_braking_radps2],
-                    start,
+                    skid: habits.skid,
                     ..SeekurModel::default()
                 },
                 now,
             )),
             Self::PsesCar => Box::new(Car::new(
                 CarModel {
+                    ignores_dead_man: habits.ignores_watchdog,
                     coasting: silent.braking_mps2,
-                    start,
                     ..CarModel::default()
                 },
                 now,
             )),
+        }
+    }
+}
+
+/// How an emulated robot differs from its file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Habits {
+    /// Told and kept instead of the file's watchdog time.
+    pub watchdog_s: Option<f64>,
+    /// It tells a watchdog and does not stop by it.
+    pub ignores_watchdog: bool,
+    /// True turn rate for each turn rate of its wheels.
+    pub skid: f64,
+}
+
+impl Default for Habits {
+    fn default() -> Self {
+        Self {
+            watchdog_s: None,
+            ignores_watchdog: false,
+            skid: 1.0,
         }
     }
 }
@@ -194,7 +241,8 @@ pub fn course(kind: Kind) -> (World, Vec<[f64; 2]>) {
             vec![[2.0, -0.6], [6.0, -0.6], [30.0, -0.6]],
         ),
         Kind::PsesCar => (
-            corridor(2.6, 1.2, 0.6, Some([1.3, 0.48, 0.1, 0.1])),
+            // Nothing stands in the metre around the start that the operator vouches for.
+            corridor(2.6, 1.2, 1.1, Some([1.3, 0.3, 0.1, 0.1])),
             vec![[0.9, -0.15], [1.7, -0.15], [30.0, -0.15]],
         ),
     }

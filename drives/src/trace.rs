@@ -6,7 +6,8 @@ use haltline_robots::Scanner as Mount;
 
 use crate::control::Tick;
 
-/// Writes rows of time, odometry increment and ranges (CSV, two header lines).
+/// Writes rows of time, odometry increment and ranges (CSV, two header lines), each for the beginning
+/// of its sweep.
 pub struct Trace<W: Write> {
     out: W,
     start_s: Option<f64>,
@@ -47,13 +48,16 @@ impl<W: Write> Trace<W> {
         let Some(scan) = tick.inputs.scans.last() else {
             return Ok(());
         };
-        let now_s = tick.now.as_us() as f64 * 1e-6;
+        // Where it was when the sweep began: the feedback is older or newer by some milliseconds.
+        let scan_s = scan.stamp_us as f64 * 1e-6;
+        let since_s = scan_s - tick.feedback.stamp.as_us() as f64 * 1e-6;
+        let pose = moved(tick.feedback.pose, tick.feedback.twist, since_s);
         let start_s = *self.start_s.get_or_insert_with(|| {
-            self.pose = tick.feedback.pose;
-            now_s
+            self.pose = pose;
+            scan_s
         });
         let [x, y, theta] = self.pose;
-        let [x1, y1, theta1] = tick.feedback.pose;
+        let [x1, y1, theta1] = pose;
         let (sin, cos) = theta.sin_cos();
         let (dx, dy) = (x1 - x, y1 - y);
         let turn = (theta1 - theta + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
@@ -61,7 +65,7 @@ impl<W: Write> Trace<W> {
         write!(
             self.out,
             "{:.4},{:.5},{:.5},{turn:.6}",
-            now_s - start_s,
+            scan_s - start_s,
             cos * dx + sin * dy,
             cos * dy - sin * dx,
         )?;
@@ -69,7 +73,17 @@ impl<W: Write> Trace<W> {
             write!(self.out, ",{range:.3}")?;
         }
         writeln!(self.out)?;
-        self.pose = tick.feedback.pose;
+        self.pose = pose;
         Ok(())
     }
+}
+
+/// The pose `span_s` later (or earlier) at this twist.
+fn moved([x, y, theta]: [f64; 3], [v, w]: [f64; 2], span_s: f64) -> [f64; 3] {
+    let along = theta + w * span_s / 2.0;
+    [
+        x + v * span_s * along.cos(),
+        y + v * span_s * along.sin(),
+        theta + w * span_s,
+    ]
 }

@@ -5,8 +5,10 @@ use haltline::time::Instant;
 use haltline_drives::arcos::config::Config;
 use haltline_drives::arcos::sip::Flags;
 use haltline_drives::arcos::{Deframer, Packet, Sip};
-use haltline_drives::emulator::{Robot, Seekur, SeekurModel};
-use haltline_drives::seekur::skid_factor;
+use haltline_drives::drive::{Drive, State};
+use haltline_drives::emulator::{OutOfOrder, Robot, Seekur, SeekurModel};
+use haltline_drives::robots::seekur_config;
+use haltline_drives::seekur::{Adapter, skid_factor};
 
 fn at(ms: u64) -> Instant {
     Instant::from_us(1_000_000 + ms * 1000)
@@ -125,6 +127,105 @@ fn without_argument_open_and_close_work_too() {
     );
     wire.say("fafb03020002");
     assert!(wire.wait(500).is_empty());
+}
+
+/// The other end of its line: the robot says that the button is pressed, and stays off until it is
+/// enabled again.
+#[test]
+fn the_stop_button_of_the_emulator_switches_the_motors_off() {
+    let mut wire = Wire::new(SeekurModel::default());
+    wire.open();
+    wire.say("fafb060b3bf401ff3c"); // VEL 500
+    wire.wait(1500);
+    wire.robot.press_stop(true);
+    wire.say("fafb06043b0100053b"); // ENABLE 1 does not help while it is pressed
+    let sip = Sip::decode(wire.wait(101).last().unwrap()).unwrap();
+    assert!(sip.flags.has(Flags::STOP_BUTTON | Flags::E_STALL) && !sip.flags.has(Flags::MOTORS));
+    wire.robot.press_stop(false);
+    wire.wait(2000);
+    assert!(wire.speed().abs() < 1e-9);
+    wire.say("fafb03000000");
+    let sip = Sip::decode(wire.wait(101).last().unwrap()).unwrap();
+    assert!(!sip.flags.has(Flags::STOP_BUTTON) && !sip.flags.has(Flags::MOTORS));
+    wire.say("fafb06043b0100053b");
+    let sip = Sip::decode(wire.wait(101).last().unwrap()).unwrap();
+    assert!(sip.flags.has(Flags::MOTORS) && !sip.flags.has(Flags::E_STALL));
+}
+
+/// Servers differ in what they make of a packet out of order; none of them may be upset by this client.
+#[test]
+fn the_adapter_opens_servers_of_every_habit() {
+    for out_of_order in [OutOfOrder::Restart, OutOfOrder::Ignore, OutOfOrder::Adopt] {
+        for tells_time in [true, false] {
+            let mut robot = Seekur::new(
+                SeekurModel {
+                    out_of_order,
+                    tells_time,
+                    ..SeekurModel::default()
+                },
+                at(0),
+            );
+            let file = haltline_robots::Robot::embedded("seekur_jr").unwrap();
+            let mut adapter = Adapter::new(seekur_config(&file), at(0));
+            serve(&mut adapter, &mut robot, 0..2000);
+            assert_eq!(adapter.state(), State::Disabled, "{out_of_order:?}");
+        }
+    }
+}
+
+fn serve(adapter: &mut Adapter, robot: &mut Seekur, span_ms: std::ops::Range<u64>) {
+    for ms in span_ms {
+        adapter.tick(at(ms));
+        let mut room = [0; 300];
+        let count = adapter.outgoing(&mut room, at(ms));
+        robot.receive(&room[..count], at(ms));
+        robot.step(at(ms));
+        adapter.receive(&robot.outgoing(), at(ms));
+    }
+}
+
+/// An earlier client has left a set point behind; the watchdog has stopped the robot. Whatever the
+/// next client hears, the robot does not drive off again.
+#[test]
+fn a_set_point_left_behind_is_not_revived_by_a_handshake() {
+    for (hears, half) in [
+        (true, ""),
+        (false, ""),
+        (true, "fafb060b3bf4"),
+        (true, "fafbff"),
+    ] {
+        let mut wire = Wire::new(SeekurModel::default());
+        wire.open();
+        wire.say("fafb060b3bf401ff3c"); // VEL 500
+        wire.say(half);
+        wire.wait(5000);
+        let before = wire.robot.truth();
+        assert!(before.twist[0].abs() < 1e-9);
+        let file = haltline_robots::Robot::embedded("seekur_jr").unwrap();
+        let mut adapter = Adapter::new(seekur_config(&file), at(5000));
+        let mut fastest: f64 = 0.0;
+        for ms in 5000..15_000 {
+            adapter.tick(at(ms));
+            let mut room = [0; 300];
+            let count = adapter.outgoing(&mut room, at(ms));
+            wire.robot.receive(&room[..count], at(ms));
+            wire.robot.step(at(ms));
+            let said = wire.robot.outgoing();
+            if hears {
+                adapter.receive(&said, at(ms));
+            }
+            fastest = fastest.max(wire.robot.truth().twist[0]);
+        }
+        let moved = wire.robot.truth().pose[0] - before.pose[0];
+        // A robot that cannot be heard is not known to be open: a quarter of a second, once.
+        let most = if hears { 0.003 } else { 0.14 };
+        assert!(
+            fastest <= most && moved < 0.04,
+            "{half:?}: {fastest} m/s, {moved} m"
+        );
+        assert!(wire.robot.truth().twist[0].abs() < 1e-9);
+        assert_eq!(hears, adapter.state() == State::Disabled);
+    }
 }
 
 #[test]

@@ -285,6 +285,66 @@ fn the_watchdog_stands_where_the_list_says() {
     assert_eq!(config.rotation_max_degps, None);
 }
 
+/// Every field of the sheet's list in its order, each word with a value of its own.
+#[test]
+fn every_field_of_the_configuration_stands_where_the_list_says() {
+    let mut data = b"Pioneer\0seekurjr\0no7\0".to_vec();
+    let words = |data: &mut Vec<u8>, values: &[u16]| {
+        data.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    };
+    data.push(99); // unused
+    words(&mut data, &[101, 102, 103, 104, 105]); // RotVelTop TransVelTop RotAccTop TransAccTop PwmMax
+    data.extend(b"Jr\0");
+    data.extend([20, 2, 3]); // SipCycle HostBaud Aux1Baud
+    words(&mut data, &[106, 107]); // HasGripper FrontSonar
+    data.push(4); // RearSonar
+    words(&mut data, &[108, 109, 110]); // LowBattery RevCount Watchdog
+    data.push(5); // P2Mpacs
+    words(&mut data, &[111, 112, 113, 114]); // StallVal StallCount JoyVel JoyRotVel
+    words(&mut data, &[115, 116, 117, 118, 119, 120, 121]); // RotVelMax TransVelMax RotAcc RotDecel RotKp Kv Ki
+    words(&mut data, &[122, 123, 124, 125, 126]); // TransAcc TransDecel TransKp Kv Ki
+    data.extend([6, 7, 8, 9, 2, 1]); // FrontBumps RearBumps Charger SonarCycle AutoBaud HasGyro
+    words(&mut data, &[127]); // DriftFactor
+    data.extend([10, 11]); // Aux2Baud Aux3Baud
+    words(&mut data, &[128, 129]); // TicksMM ShutdownVoltage
+    data.extend(b"3.1\0");
+    words(&mut data, &[130, 131]); // GyroCW GyroCCW
+    data.push(12); // KinematicsDelay
+    words(&mut data, &[132, 133, 134, 135, 136, 137]); // LatVelTop .. LatDecel ChargeThreshold
+    data.push(13); // PDBPort
+    words(&mut data, &[138]); // GyroRateLimit
+    data.push(14); // HighTempShutdown
+    words(&mut data, &[139]); // PowerBits
+    data.push(2); // BatteryType
+    words(&mut data, &[140, 141]); // LowSOC ShutdownSOC
+    data.extend(b"boot\0");
+    data.extend([0; 6]); // ConfigFlags GyroFW
+    let config = Config::decode(&Packet::new(0x20, &data).unwrap()).unwrap();
+    let wanted = Config {
+        class: text(b"Pioneer"),
+        subclass: text(b"seekurjr"),
+        serial: text(b"no7"),
+        rotation_top_degps: Some(101),
+        speed_top_mmps: Some(102),
+        rotation_acceleration_top_degps2: Some(103),
+        acceleration_top_mmps2: Some(104),
+        sip_cycle_ms: Some(20),
+        low_battery_decivolts: Some(108),
+        watchdog_ms: Some(110),
+        rotation_max_degps: Some(115),
+        speed_max_mmps: Some(116),
+        rotation_acceleration_degps2: Some(117),
+        rotation_deceleration_degps2: Some(118),
+        acceleration_mmps2: Some(122),
+        deceleration_mmps2: Some(123),
+        front_bumpers: Some(6),
+        rear_bumpers: Some(7),
+        has_gyro: Some(true),
+        low_charge_percent: Some(140),
+    };
+    assert_eq!(config, wanted);
+}
+
 #[test]
 fn other_packets_are_read_or_refused_whole() {
     let gyro = Packet::new(0x98, &[2, 0, 2, 30, 10, 2, 31]).unwrap();

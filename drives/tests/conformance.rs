@@ -1,7 +1,8 @@
 //! Every adapter passes every check, and every broken adapter is caught by its own.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-use haltline_drives::conformance::{Bench, CHECKS, CarBench, SeekurBench, TWINS};
+use haltline_drives::conformance::{Bench, CHECKS, CarBench, FileBench, SeekurBench, TWINS};
+use haltline_drives::robots::Kind;
 use haltline_drives::seekur::Wheels;
 
 fn benches() -> Vec<Box<dyn Bench>> {
@@ -64,6 +65,21 @@ fn every_adapter_passes_every_check() {
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// With the times and decelerations of the robot files themselves; a robot without watchdog is found.
+#[test]
+fn the_robots_of_the_files_rest_in_time_when_their_host_dies() {
+    let check = CHECKS
+        .iter()
+        .find(|check| check.requirements == ["DRIVE-14"]);
+    for (kind, name) in [(Kind::SeekurJr, "seekur_jr"), (Kind::PsesCar, "pses_car")] {
+        let file = haltline_robots::Robot::embedded(name).unwrap();
+        let run = |bench: FileBench| (check.unwrap().run)(&bench, None);
+        println!("{name}: {}", run(FileBench::new(kind, &file)).unwrap());
+        let failure = run(FileBench::without_watchdog(kind, &file)).unwrap_err();
+        assert_eq!(failure.requirement, "DRIVE-14");
+    }
 }
 
 #[test]

@@ -113,6 +113,54 @@ fn the_emulated_car_is_measured_as_it_is() {
     );
 }
 
+/// A driven turn to each side, the true turn from outside: the factor comes back.
+#[test]
+fn the_skid_factor_is_measured_by_turning() {
+    for skid in [0.55, 0.8, 1.0] {
+        let wheels = Wheels::VelRvel;
+        // The robot skids, and nobody has told its adapter.
+        let mut rig = Rig::new(&SeekurBench { wheels, skid: 1.0 }, None);
+        rig.robot = SeekurBench { wheels, skid }.robot(rig.now);
+        let platform = std::cell::RefCell::new(Virtual(rig));
+        let mut before = 0.0;
+        let mut told = Vec::new();
+        let fit = {
+            let mut shared = Shared(&platform);
+            measure::skid(&mut shared, 0.4, |wheels| {
+                let truth = platform.borrow().0.robot.truth().pose[2];
+                told.push(wheels);
+                let turned = truth - before;
+                before = truth;
+                Some(turned)
+            })
+        };
+        let fit = fit.unwrap().unwrap();
+        assert!((fit.factor - skid).abs() < 0.005, "{skid}: {fit:?}");
+        assert!(told[0] > 12.0 && told[1] < -12.0, "{told:?}");
+    }
+}
+
+/// A platform that is looked at while it is measured.
+struct Shared<'a>(&'a std::cell::RefCell<Virtual>);
+
+impl Platform for Shared<'_> {
+    fn drive(&mut self, linear: f64, turn: f64, span_s: f64) -> Result<Vec<Sample>, String> {
+        self.0.borrow_mut().drive(linear, turn, span_s)
+    }
+
+    fn silence(&mut self, span_s: f64) -> Vec<Sample> {
+        self.0.borrow_mut().silence(span_s)
+    }
+
+    fn recover(&mut self) -> Result<(), String> {
+        self.0.borrow_mut().recover()
+    }
+
+    fn now_s(&self) -> f64 {
+        self.0.borrow().now_s()
+    }
+}
+
 #[test]
 fn a_file_that_promises_more_than_the_robot_does_is_told_so() {
     let bench = SeekurBench {

@@ -62,8 +62,12 @@ fn the_board_answers_as_the_sheet_says() {
         ("!DRV F 300 301", ":ERR(269)"),
         ("!DRV F 1001", ":ERR(266)"),
         ("!DRV B -1", ":ERR(266)"),
-        ("!DRV F +3", ":ERR(268)"),
+        ("!DRV F 1000 10", ":ERR(269)"),
         ("?DRV", ":F 300"),
+        // Faults of the firmware: a wrong number for what is none, an old one for what is missing.
+        ("!DRV F +3", ":F -47"),
+        ("!DRV F", ":F -47"),
+        ("!DRV F 300", ":F 300"),
         ("!DRV", ":ok"),
         ("!DRV ~DMS=200", ":~DMS=200"),
         ("?DRV ~DMS", ":F 300 ~DMS=200"),
@@ -155,6 +159,21 @@ fn positive_levels_steer_right() {
     assert!(wire.car.truth().twist[1] > 0.1);
 }
 
+fn decision(linear_mps: f64, curvature_per_m: f64, now: Instant) -> Decision {
+    Decision {
+        action: Action::Pass,
+        setpoint: Motion::Arc {
+            linear: Speed::from_um_per_s((linear_mps * 1e6) as i32),
+            curvature: Curvature::from_urad_per_m((curvature_per_m * 1e6) as i32),
+        },
+        reason: Reason::None,
+        status: StopStatus::Running,
+        expires: now.plus(Duration::from_ms(22)),
+        verdict: None,
+        factor_permille: 1000,
+    }
+}
+
 /// A board whose every answer is written by the test; it streams a still gyro.
 struct Script {
     adapter: Adapter,
@@ -181,10 +200,10 @@ impl Script {
     }
 
     fn answer(&mut self, line: &str) -> String {
-        let words: Vec<&str> = line.split(' ').collect();
+        let words: Vec<&str> = line.split_whitespace().collect();
         match words.as_slice() {
             ["?DRV", "~DMS"] => format!("F 0 ~DMS={}", self.dead_man_ms),
-            ["", "0"] => "ERR(258)".to_owned(),
+            [spoilt] if spoilt.len() > 1000 => "ERR(259)".to_owned(),
             ["!DRV", option] => option.to_string(),
             ["!DRV", mode, value, _] => format!("{mode} {value}"),
             ["!STEER", value, _] => value.to_string(),
@@ -231,18 +250,7 @@ impl Script {
         let mut result = Ok(());
         for _ in 0..ms / 20 {
             let now = at(self.now_ms);
-            let decision = Decision {
-                action: Action::Pass,
-                setpoint: Motion::Arc {
-                    linear: Speed::from_um_per_s((linear_mps * 1e6) as i32),
-                    curvature: Curvature::from_urad_per_m((curvature_per_m * 1e6) as i32),
-                },
-                reason: Reason::None,
-                status: StopStatus::Running,
-                expires: now.plus(Duration::from_ms(22)),
-                verdict: None,
-                factor_permille: 1000,
-            };
+            let decision = decision(linear_mps, curvature_per_m, now);
             result = self
                 .adapter
                 .send(&decision, now)
@@ -286,12 +294,13 @@ fn the_dead_man_time_is_set_and_read_back_before_anything_else_may_happen() {
         .iter()
         .map(String::as_str)
         .skip(1)
-        .take(5)
+        .take(6)
         .collect();
     assert_eq!(
         first,
         [
-            "!DRV F 0 0",
+            "!DRV F 0  0",
+            "!DRV F 0  0",
             "!DRV ~DMS=200",
             "?DRV ~DMS",
             "!SID 99",
@@ -357,6 +366,65 @@ fn an_answer_that_does_not_come_is_noticed_within_the_dead_man_time() {
     assert_eq!(script.adapter.state(), State::Connecting);
 }
 
+/// An answer that does not fit may mean that the board does something else: it is stopped before
+/// anything is asked. A flipped bit makes `F -500`, the brake, a `D -500`, which drives.
+#[test]
+fn an_answer_that_does_not_fit_is_followed_by_a_stop_at_once() {
+    let mut script = Script::driving();
+    script.decide(0.4, 0.0, 200).unwrap();
+    script.lines.clear();
+    let now = at(script.now_ms);
+    script.adapter.receive(b"\x02:D -500\x03", now);
+    assert_eq!(script.adapter.state(), State::Connecting);
+    script.wait(1);
+    assert_eq!(script.lines.first().unwrap(), "!DRV F -500  -500");
+}
+
+/// The wheel sensor tells no direction, so a car that rolls is not told the other one.
+#[test]
+fn a_rolling_car_comes_to_rest_before_it_reverses() {
+    let mut car = Car::new(CarModel::default(), at(0));
+    let file = haltline_robots::Robot::embedded("pses_car").unwrap();
+    let mut adapter = Adapter::new(car_config(&file, 99), at(0));
+    let mut now_ms = 0;
+    let mut run = |car: &mut Car, adapter: &mut Adapter, v: f64, ms: u64| {
+        let mut worst: f64 = 0.0;
+        for _ in 0..ms {
+            now_ms += 1;
+            let now = at(now_ms);
+            if now_ms.is_multiple_of(20) {
+                let decision = decision(v, 0.0, now);
+                let _ = adapter.send(&decision, now);
+            }
+            adapter.tick(now);
+            if adapter.state() == State::Disabled {
+                adapter.enable(now);
+            }
+            let mut room = [0; 300];
+            let count = adapter.outgoing(&mut room, now);
+            car.receive(&room[..count], now);
+            car.step(now);
+            adapter.receive(&car.outgoing(), now);
+            if let Some(told) = adapter.feedback() {
+                let truth = car.truth().twist[0];
+                // One that does not move may be told to move for as long as a pulse takes.
+                if truth.abs() > 0.1 && told.twist[0] * truth < 0.0 {
+                    worst = worst.max(truth.abs());
+                }
+            }
+        }
+        worst
+    };
+    run(&mut car, &mut adapter, 0.0, 3000);
+    run(&mut car, &mut adapter, 0.5, 3000);
+    assert!(car.truth().twist[0] > 0.4);
+    // At once the other way, and back again: the feedback never has the wrong sign.
+    assert!(run(&mut car, &mut adapter, -0.4, 4000) < 1e-9);
+    assert!(car.truth().twist[0] < -0.3);
+    assert!(run(&mut car, &mut adapter, 0.5, 4000) < 1e-9);
+    assert!(car.truth().twist[0] > 0.4);
+}
+
 #[test]
 fn a_curvature_beyond_the_wheels_is_a_stop_and_named() {
     let mut script = Script::driving();
@@ -369,7 +437,7 @@ fn a_curvature_beyond_the_wheels_is_a_stop_and_named() {
         .rev()
         .find(|line| line.starts_with("!DRV"))
         .unwrap();
-    assert!(last.contains(" 0 0") || last.contains(" -500"), "{last}");
+    assert!(last.contains(" 0  0") || last.contains(" -500"), "{last}");
 }
 
 #[test]
@@ -378,7 +446,7 @@ fn zero_after_forward_motion_is_the_brake_and_then_neutral() {
     script.decide(0.4, 0.0, 200).unwrap();
     script.lines.clear();
     script.decide(0.0, 0.0, 200).unwrap();
-    assert!(script.lines.contains(&"!DRV F -500 -500".to_owned()));
+    assert!(script.lines.contains(&"!DRV F -500  -500".to_owned()));
     script.decide(0.0, 0.0, 1000).unwrap();
     assert_eq!(
         script
@@ -386,7 +454,7 @@ fn zero_after_forward_motion_is_the_brake_and_then_neutral() {
             .iter()
             .rfind(|l| l.starts_with("!DRV"))
             .unwrap(),
-        "!DRV F 0 0"
+        "!DRV F 0  0"
     );
 }
 
@@ -397,6 +465,10 @@ fn a_line_somebody_else_began_is_spoiled_and_not_finished() {
         "!DRV F 1000",
         "!DRV F 10",
         "!DRV F 1000 10",
+        "!DRV F 1000 1000",
+        "!DRV F 300 300 0",
+        "!DRV B 500 500",
+        "!DRV D -500 -500",
         "!STEER 90",
         "!DR",
         "",
@@ -436,14 +508,13 @@ fn a_restart_in_the_middle_of_a_line_finishes_it() {
         for _ in 0..20 {
             script.adapter.receive(b":nonsense\x03", now);
         }
-        let mut rest = [0; 300];
+        let mut rest = [0; 600];
         let more = script.adapter.outgoing(&mut rest, now);
-        let line = [&room[..cut], &rest[..more]].concat();
-        assert_eq!(
-            line,
-            b"!STEER 144 144\n",
-            "{}",
-            String::from_utf8_lossy(&line)
-        );
+        let said = [&room[..cut], &rest[..more]].concat();
+        let said = String::from_utf8(said).unwrap();
+        // The line that was begun, and then a stop for every restart.
+        let stops = said.strip_prefix("!STEER 144  144\n").unwrap();
+        assert_eq!(stops.replace("!DRV F 0  0\n", ""), "", "{said}");
+        assert!(!stops.is_empty());
     }
 }

@@ -24,15 +24,15 @@ fn text(line: &[u8]) -> String {
 fn commands_are_the_lines_of_the_sheet() {
     let forward = |level| Command::Drive(DriveLevel::forward(level).unwrap());
     let cases = [
-        (forward(300), "!DRV F 300 300\n"),
-        (forward(-500), "!DRV F -500 -500\n"),
+        (forward(300), "!DRV F 300  300\n"),
+        (forward(-500), "!DRV F -500  -500\n"),
         (
             Command::Drive(DriveLevel::reverse(120).unwrap()),
-            "!DRV B 120 120\n",
+            "!DRV B 120  120\n",
         ),
         (
             Command::Steer(SteeringLevel::new(-200).unwrap()),
-            "!STEER -200 -200\n",
+            "!STEER -200  -200\n",
         ),
         (Command::SetDeadMan(200), "!DRV ~DMS=200\n"),
         (Command::GetDeadMan, "?DRV ~DMS\n"),
@@ -43,6 +43,55 @@ fn commands_are_the_lines_of_the_sheet() {
     ];
     for (command, line) in cases {
         assert_eq!(text(command.encode().as_slice()), line);
+    }
+    // As the sheet prints them, with one space: the same to a board.
+    for (line, number, at) in [("!DRV F 300 300", 300, 2), ("!STEER -200 -200", -200, 1)] {
+        let request = Request::parse(line.as_bytes()).unwrap();
+        assert_eq!(request.checked_number(at), Ok(number));
+    }
+}
+
+/// No flipped bit and no lost byte makes another number: two that differ are refused.
+#[test]
+fn a_spoiled_set_point_never_carries_another_number() {
+    let accepted = |line: &[u8]| -> Option<i32> {
+        let request = Request::parse(line.strip_suffix(b"\n")?).ok()?;
+        let sets = request.is(0, "DRV") || request.is(0, "STEER");
+        let at = if request.is(0, "DRV") { 2 } else { 1 };
+        request.word(at + 1).filter(|_| sets)?;
+        request.checked_number(at).ok()
+    };
+    // Numbers without their check: a word went missing.
+    let alone = |line: &[u8], words: usize| -> Option<String> {
+        let text = String::from_utf8_lossy(line).into_owned();
+        let found: Vec<&str> = text.split_ascii_whitespace().collect();
+        (found.len() < words).then(|| found[found.len() - 1].to_owned())
+    };
+    for level in [-500, -1, 0, 1, 11, 300, 1000] {
+        let level_f = DriveLevel::forward(level).unwrap();
+        let steer = Command::Steer(SteeringLevel::new(level).unwrap());
+        for (command, words) in [(Command::Drive(level_f), 4), (steer, 3)] {
+            let good = command.encode().as_slice().to_vec();
+            for at in 0..good.len() - 1 {
+                let mut lost = good.clone();
+                lost.remove(at);
+                let flipped = (0..8).map(|bit| {
+                    let mut line = good.clone();
+                    line[at] ^= 1 << bit;
+                    line
+                });
+                for line in flipped
+                    .chain([lost])
+                    .filter(|line| !line.contains(&10) || line.ends_with(b"\n"))
+                {
+                    assert!(accepted(&line).is_none_or(|number| number == i32::from(level)));
+                    // And no word goes missing that would leave a number without its check.
+                    let name = line.starts_with(b"!DRV F ") || line.starts_with(b"!STEER ");
+                    let alone = alone(&line, words).filter(|_| name);
+                    assert!(alone.is_none_or(|number| number == level.to_string()));
+                }
+            }
+        }
     }
 }
 
@@ -218,6 +267,17 @@ fn bad_data_messages_are_refused_whole() {
     assert_eq!(crc.decode("2603D111EB0F68C"), Err(DaqError::Encoding));
     assert_eq!(crc.decode(""), Err(DaqError::Count));
     let ascii = group(Encoding::Ascii, false);
+    // Numbers that the type cannot hold.
+    for text in [
+        "-5 | 1 | 2",
+        "65536 | 1 | 2",
+        "+5 | 1 | 2",
+        "99999999999 | 1 | 2",
+    ] {
+        assert_eq!(ascii.decode(text), Err(DaqError::Encoding), "{text}");
+    }
+    // Older firmware puts a second mark before binary data.
+    assert_eq!(daq::split("#3:26"), Ok((3, "26")));
     assert_eq!(ascii.decode("1 | 2"), Err(DaqError::Count));
     assert_eq!(ascii.decode("1 | 2 | 3 | 4"), Err(DaqError::Count));
     assert_eq!(ascii.decode("1 | 2 | x"), Err(DaqError::Encoding));

@@ -106,7 +106,7 @@ impl Config {
         data.text()?; // firmware version
         data.bytes(5)?; // gyro scales, kinematics delay
         data.bytes(10)?; // lateral limits
-        data.bytes(9)?; // charge threshold, port, gyro limit, temperature, power bits
+        data.bytes(8)?; // charge threshold, port, gyro limit, temperature, power bits
         data.u8()?; // battery type
         self.low_charge_percent = Some(data.u16()?);
         Some(())
@@ -149,7 +149,7 @@ impl Config {
         byte(out, self.rear_bumpers)?;
         zeros(out, 3)?;
         byte(out, self.has_gyro.map(u8::from))?;
-        zeros(out, 34)?;
+        zeros(out, 33)?;
         word(out, self.low_charge_percent)
     }
 }

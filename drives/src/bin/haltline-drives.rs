@@ -8,27 +8,29 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use haltline_drives::clock::Clock;
-use haltline_drives::control::{Control, Ending, Operator, shield};
+use haltline_drives::control::{Control, Ending, Operator, Wish, shield};
 use haltline_drives::drive::State;
 use haltline_drives::emulator::process::{Process, print};
 use haltline_drives::eye::Eye;
 use haltline_drives::goal::navigate;
 use haltline_drives::link;
 use haltline_drives::measure::{self, Live};
-use haltline_drives::robots::{Kind, corridor, course, follow};
+use haltline_drives::robots::{Habits, Kind, corridor, course, follow};
 use haltline_drives::trace::Trace;
 use haltline_robots::Robot;
 use haltline_scenarios::controller::Controller;
 
 const USAGE: &str = "\
 usage: haltline-drives emulate seekur-jr|pses-car [--port pty|tcp:ADDRESS] [--robot FILE]
-                       [--hall AHEAD] [--watchdog-s S] [--ignore-watchdog]
+                       [--hall AHEAD] [--watchdog-s S] [--ignore-watchdog] [--slow N]
        haltline-drives drive seekur-jr|pses-car --port PATH|tcp:ADDRESS --scan ADDRESS
                        [--robot FILE] [--goal X,Y[,DEG] | --speed MPS [--straight]]
                        [--for S] [--trace FILE]
-                       [--persist] [--panic-moving]
+                       [--persist] [--panic-moving] [--slow N]
        haltline-drives measure seekur-jr|pses-car --port PATH|tcp:ADDRESS [--robot FILE]
-                       [--speed MPS]     nothing guards these motions: free floor, stop button";
+                       [--speed MPS]     nothing guards these motions: free floor, stop button
+
+--slow N: both ends of a test live N times slower than the world; never with a real robot";
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -70,6 +72,11 @@ fn number(words: &[String], name: &str) -> io::Result<Option<f64>> {
     }
 }
 
+fn clock(words: &[String]) -> io::Result<Clock> {
+    let slowness = number(words, "--slow")?.unwrap_or(1.0);
+    Ok(Clock::slowed(slowness.round().clamp(1.0, 100.0) as u32))
+}
+
 fn robot(words: &[String]) -> io::Result<(Kind, Robot)> {
     let name = words.get(1).map_or("", String::as_str);
     let kind = Kind::named(name).ok_or_else(|| {
@@ -87,14 +94,19 @@ fn robot(words: &[String]) -> io::Result<(Kind, Robot)> {
 
 fn emulate(words: &[String]) -> io::Result<()> {
     let (kind, file) = robot(words)?;
-    let clock = Clock::default();
+    let clock = clock(words)?;
     let world = match number(words, "--hall")? {
         Some(ahead) => corridor(ahead, 3.0, 3.0, None),
         None => course(kind).0,
     };
     let watchdog_s = number(words, "--watchdog-s")?;
     let ignores = words.iter().any(|word| word == "--ignore-watchdog");
-    let body = kind.emulated(&file, [0.0; 3], watchdog_s, ignores, clock.now());
+    let habits = Habits {
+        watchdog_s,
+        ignores_watchdog: ignores,
+        ..Habits::default()
+    };
+    let body = kind.emulated(&file, habits, clock.now());
     let port = option(words, "--port").unwrap_or("pty");
     let (mut process, addresses) = Process::new(body, &file, world, port, clock)?;
     let mut out = io::stdout();
@@ -124,8 +136,8 @@ fn drive(words: &[String]) -> io::Result<()> {
         Some(path) => Some(Trace::new(BufWriter::new(File::create(path)?), &mount)?),
         None => None,
     };
-    let eye = Eye::new(Box::new(link::tcp(scan)?), mount);
-    let clock = Clock::default();
+    let eye = Eye::new(Box::new(link::tcp(scan, link::CONNECT)?), mount);
+    let clock = clock(words)?;
     let adapter = kind.adapter(&file, std::process::id(), clock.now());
     let opener = Box::new(move || link::open(&port, kind.baud()));
     let controller = match option(words, "--goal") {
@@ -151,7 +163,11 @@ fn drive(words: &[String]) -> io::Result<()> {
         } else {
             follow(kind, &points, view.feedback.pose, speed)
         };
-        (run_s < end_s).then_some(wanted)
+        if run_s < end_s {
+            Wish::Motion(view.now, wanted)
+        } else {
+            Wish::End
+        }
     };
     let ending = control.run(&operator, propose, |tick| {
         if let Some(Err(error)) = trace.as_mut().map(|trace| trace.tick(tick)) {

@@ -4,7 +4,7 @@ use haltline::decision::Decision;
 use haltline::input::Motion;
 use haltline::time::{Duration, Instant};
 
-use super::{Adapter, KEEP_ALIVE, Link, SPOIL, curve, wheel_angle};
+use super::{Adapter, KEEP_ALIVE, Link, curve, wheel_angle};
 use crate::drive::{Drive, DriveError, Fault, Feedback, Frame, State};
 use crate::governor::Setpoint;
 use crate::uc::ANSWER_MS;
@@ -63,8 +63,9 @@ impl Drive for Adapter {
                     self.restart(now);
                     return self.report(Frame::Answer(command), Fault::NoAnswer);
                 }
+                let stop = self.thrust(0, now);
                 if self.pending.is_empty()
-                    && let Some(command) = setup.next(now, &self.config)
+                    && let Some(command) = setup.next(now, &self.config, stop)
                 {
                     self.link = Link::SettingUp(setup);
                     self.say(command, now);
@@ -125,9 +126,7 @@ impl Drive for Adapter {
         self.deframer = Deframer::default();
         self.restart(now);
         // A new link: what was begun on the old one is spoiled, not finished.
-        self.out.clear();
-        self.mid_line = false;
-        let _ = self.out.extend(SPOIL);
+        self.begin(now);
     }
 
     fn shut_down(&mut self, now: Instant) {

@@ -16,7 +16,7 @@ use crate::cursor::Buffer;
 use crate::drive::{DriveError, Fault, Feedback, Frame};
 use crate::governor::{Braking, Governor, Setpoint};
 use crate::uc::command::{Command, DriveLevel, SteeringLevel};
-use crate::uc::line::{Deframer, Kind, Message};
+use crate::uc::line::{Deframer, Kind, LINE_MAX, Message};
 use crate::uc::{ANSWER_MS, daq, reply};
 use answers::Pending;
 use odometry::CarOdometry;
@@ -26,9 +26,13 @@ use setup::Setup;
 pub(crate) const WHEEL_GROUP: u8 = 1;
 /// Data group of the turn rate.
 pub(crate) const GYRO_GROUP: u8 = 2;
-/// Ends a line that somebody else has begun so that it is refused: its two numbers differ, or it
-/// begins with nothing the board knows.
-const SPOIL: &[u8] = b" 0\n";
+/// Ends a line that somebody else has begun so that it is refused: it gets longer than any that the
+/// board takes. (Two equal numbers may stand there already, and a third is not known to be refused.)
+const SPOIL: [u8; LINE_MAX + 3] = {
+    let mut line = [b'X'; LINE_MAX + 3];
+    (line[0], line[1], line[LINE_MAX + 2]) = (b' ', b'0', b'\n');
+    line
+};
 /// How often something is said while nothing is decided.
 const KEEP_ALIVE: Duration = Duration::from_ms(40);
 /// How long the brake is held after the car was last seen moving.
@@ -67,7 +71,7 @@ pub struct Adapter {
     config: Config,
     governor: Governor,
     deframer: Deframer,
-    out: Buffer<1024>,
+    out: Buffer<2048>,
     /// The last byte that was handed out did not end its line.
     mid_line: bool,
     pending: Pending,
@@ -98,14 +102,11 @@ impl Adapter {
     /// An adapter that sets up its board from the first tick on.
     #[must_use]
     pub fn new(config: Config, now: Instant) -> Self {
-        let mut out = Buffer::default();
-        // It fits: the buffer is empty.
-        let _ = out.extend(SPOIL);
-        Self {
+        let mut adapter = Self {
             config,
             governor: Governor::new(config.braking, true),
             deframer: Deframer::default(),
-            out,
+            out: Buffer::default(),
             mid_line: false,
             pending: Pending::default(),
             link: Link::SettingUp(Setup::new(now)),
@@ -119,7 +120,25 @@ impl Adapter {
             waiting: false,
             moved: now,
             forward: false,
-        }
+        };
+        adapter.begin(now);
+        adapter
+    }
+
+    /// First words on a new link.
+    fn begin(&mut self, now: Instant) {
+        self.out.clear();
+        // It fits: the buffer is empty.
+        let _ = self.out.extend(&SPOIL);
+        self.mid_line = false;
+        self.stop_at_once(now);
+    }
+
+    /// Says zero, or the brake, without waiting for anything; its answer is not waited for either.
+    fn stop_at_once(&mut self, now: Instant) {
+        let line = Command::Drive(self.thrust(0, now)).encode();
+        // A full buffer means that nobody writes it out.
+        let _ = self.out.extend(line.as_slice());
     }
 
     fn report(&mut self, frame: Frame, fault: Fault) {
@@ -132,6 +151,8 @@ impl Adapter {
         self.link = Link::SettingUp(Setup::new(now));
         self.pending = Pending::default();
         self.forget_lines();
+        // The set-up waits first, and what was said last must not stay in force meanwhile.
+        self.stop_at_once(now);
         self.odometry.restart();
         (self.wanted, self.silent, self.waiting) = (false, false, false);
         self.heard = now;
@@ -185,6 +206,14 @@ impl Adapter {
             self.config.reverse_max_mmps.saturating_neg(),
             self.config.speed_max_mmps,
         );
+        // The wheel sensor tells no direction: one that turns is taken to turn as it was last told.
+        // So it comes to rest before it is told the other one.
+        let turns = self.odometry.speed().abs() > 0.0;
+        let mmps = if turns && mmps != 0 && (mmps > 0) != self.forward {
+            0
+        } else {
+            mmps
+        };
         let level = curve::SPEED.level(mmps);
         let recently = now.since(self.moved).is_some_and(|gap| gap < BRAKE_AFTER);
         if mmps == 0 && self.forward && recently {

@@ -32,12 +32,19 @@ impl Setup {
     }
 
     /// The next command, once the one before is answered.
-    pub(super) fn next(&mut self, now: Instant, config: &Config) -> Option<Command> {
+    ///
+    /// - `stop`: zero, or the brake of a car that still rolls
+    pub(super) fn next(
+        &mut self,
+        now: Instant,
+        config: &Config,
+        stop: DriveLevel,
+    ) -> Option<Command> {
         if now.since(self.since).is_none_or(|waited| waited < SETTLE) {
             return None;
         }
         let command = match self.step {
-            0 => Command::Drive(DriveLevel::NEUTRAL),
+            0 => Command::Drive(stop),
             1 => Command::SetDeadMan(config.dead_man_ms),
             2 => Command::GetDeadMan,
             3 => Command::SetSession(config.session),

@@ -5,9 +5,12 @@ use std::panic::Location;
 use haltline::time::Duration;
 
 use super::bench::{Bench, CarBench, SeekurBench};
+use super::checks::moves;
 use super::rig::Rig;
+use super::twins::Twin;
 use crate::arcos::{self, Command, Deframer, Packet, Sip, server};
-use crate::cola::{self, decode_scan};
+use crate::cola::{self, ScanTelegram};
+use crate::emulator::{Car, CarModel, Robot, Seekur, SeekurModel};
 use crate::seekur::Wheels;
 use crate::uc::command::Request;
 use crate::uc::daq::{self, Encoding, Group, Type};
@@ -25,11 +28,11 @@ fn demand(holds: bool, what: &str) -> Result<(), Broken> {
     }
 }
 
-/// Every ARCOS decoder: total, and what it accepts it writes again as it was.
+/// Every ARCOS decoder: total, and what it accepts it writes again as it was, behind `checksum`.
 ///
 /// # Errors
 /// The property that does not hold.
-pub fn arcos(bytes: &[u8]) -> Result<(), Broken> {
+pub fn arcos(bytes: &[u8], checksum: fn(&[u8]) -> u16) -> Result<(), Broken> {
     let mut deframer = Deframer::default();
     let now = haltline::time::Instant::from_us(1);
     let found = bytes.iter().filter_map(|byte| deframer.push(*byte, now));
@@ -40,7 +43,7 @@ pub fn arcos(bytes: &[u8]) -> Result<(), Broken> {
     });
     for packet in packets.iter().chain(&made) {
         let wire = packet.to_bytes();
-        let sum = arcos::frame::checksum(packet_body(wire.as_slice()));
+        let sum = checksum(packet_body(wire.as_slice()));
         demand(wire.as_slice().ends_with(&sum.to_be_bytes()), "checksum")?;
         if let Some(command) = Command::decode(packet) {
             let again = command
@@ -50,8 +53,12 @@ pub fn arcos(bytes: &[u8]) -> Result<(), Broken> {
         }
         if let Some(sip) = Sip::decode(packet) {
             let again = sip.encode().and_then(|packet| Sip::decode(&packet));
-            let same = again.is_none_or(|again| again.bumpers == sip.bumpers && again.x == sip.x);
-            demand(same, "SIP round trip")?;
+            demand(again == Some(sip), "SIP round trip")?;
+        }
+        if let Some(config) = arcos::config::Config::decode(packet) {
+            let again = config.encode();
+            let again = again.and_then(|packet| arcos::config::Config::decode(&packet));
+            demand(again == Some(config), "configuration round trip")?;
         }
         let _ = server::decode(packet);
         let _ = server::Identity::decode(packet);
@@ -68,11 +75,12 @@ fn packet_body(wire: &[u8]) -> &[u8] {
         .unwrap_or_default()
 }
 
-/// Every decoder of the control board's text: total, and errors never pass for answers.
+/// Every decoder of the control board's text: total, and errors (by `error_code`) never pass for
+/// answers.
 ///
 /// # Errors
 /// The property that does not hold.
-pub fn uc(bytes: &[u8]) -> Result<(), Broken> {
+pub fn uc(bytes: &[u8], error_code: fn(&str) -> Option<u16>) -> Result<(), Broken> {
     let mut deframer = line::Deframer::default();
     let mut texts: Vec<String> = Vec::new();
     for byte in bytes {
@@ -83,7 +91,7 @@ pub fn uc(bytes: &[u8]) -> Result<(), Broken> {
     texts.push(String::from_utf8_lossy(bytes).into_owned());
     let types = [Type::U8, Type::U16, Type::I16, Type::U32];
     for text in &texts {
-        let is_error = reply::error_code(text).is_some();
+        let is_error = error_code(text).is_some();
         demand(
             !is_error || reply::drive_state(text).is_none(),
             "an error is no state",
@@ -128,16 +136,16 @@ pub fn uc(bytes: &[u8]) -> Result<(), Broken> {
 ///
 /// # Errors
 /// The property that does not hold.
-pub fn cola(bytes: &[u8]) -> Result<(), Broken> {
+pub fn cola(bytes: &[u8], decode: fn(&str) -> Option<ScanTelegram>) -> Result<(), Broken> {
     let mut deframer = cola::Deframer::default();
     for byte in bytes {
         if let Some(Ok(text)) = deframer.push(*byte)
-            && let Some(scan) = decode_scan(text)
+            && let Some(scan) = decode(text)
         {
             demand(usize::from(scan.header.count) <= cola::RANGES_MAX, "count")?;
         }
     }
-    let _ = decode_scan(&String::from_utf8_lossy(bytes));
+    let _ = decode(&String::from_utf8_lossy(bytes));
     Ok(())
 }
 
@@ -147,17 +155,47 @@ pub fn cola(bytes: &[u8]) -> Result<(), Broken> {
 ///
 /// # Errors
 /// What was said or measured that should not be.
-pub fn adapters(script: &[u8]) -> Result<(), Broken> {
+pub fn adapters(script: &[u8], twin: Option<Twin>) -> Result<(), Broken> {
     let seekur = SeekurBench {
         wheels: Wheels::VelRvel,
         skid: 1.0,
     };
-    against(&seekur, script)?;
-    against(&CarBench { stx: true }, script)
+    against(&seekur, twin, script)?;
+    against(&CarBench { stx: true }, twin, script)
 }
 
-fn against(bench: &dyn Bench, script: &[u8]) -> Result<(), Broken> {
-    let mut rig = Rig::new(bench, None);
+/// Both emulators under a client that says anything: they live on, and their truth stays finite.
+///
+/// # Errors
+/// The property that does not hold.
+pub fn emulators(script: &[u8]) -> Result<(), Broken> {
+    let mut now = haltline::time::Instant::from_us(1_000_000);
+    let robots: [Box<dyn Robot>; 2] = [
+        Box::new(Seekur::new(SeekurModel::default(), now)),
+        Box::new(Car::new(CarModel::default(), now)),
+    ];
+    for mut robot in robots {
+        for part in script.chunks(7) {
+            robot.receive(part, now);
+            now = now.plus(Duration::from_ms(u64::from(
+                part.first().copied().unwrap_or(1),
+            )));
+            robot.step(now);
+            let said = robot.outgoing();
+            demand(
+                said.len() < 100_000,
+                "an emulator says what it must and no more",
+            )?;
+        }
+        let truth = robot.truth();
+        let numbers = truth.pose.iter().chain(&truth.twist);
+        demand(numbers.into_iter().all(|value| value.is_finite()), "truth")?;
+    }
+    Ok(())
+}
+
+fn against(bench: &dyn Bench, twin: Option<Twin>, script: &[u8]) -> Result<(), Broken> {
+    let mut rig = Rig::new(bench, twin);
     for (index, byte) in script.iter().take(400).enumerate() {
         match byte & 7 {
             0 => rig.to_host = byte & 8 == 0,
@@ -173,8 +211,10 @@ fn against(bench: &dyn Bench, script: &[u8]) -> Result<(), Broken> {
             _ => rig.decide(0.0, 0.0, Duration::from_ms(u64::from(byte >> 3) + 1)),
         }
     }
-    let moved = rig.told.iter().find(|told| told.linear.abs() > 1e-9);
-    demand(moved.is_none(), &format!("{}: {moved:?}", bench.name()))?;
+    let told = rig.told.iter().find(|told| moves(told, bench.is_arc()));
+    demand(told.is_none(), &format!("{}: {told:?}", bench.name()))?;
+    let moved = rig.fastest.iter().any(|rate| *rate > 1e-9);
+    demand(!moved, &format!("{}: {:?}", bench.name(), rig.fastest))?;
     let finite = rig.feedback.is_none_or(|feedback| {
         let numbers = feedback.pose.iter().chain(&feedback.twist);
         numbers.into_iter().all(|value| value.is_finite())

@@ -118,8 +118,7 @@ impl Bench for SeekurBench {
     }
 
     fn silent_braking(&self) -> f64 {
-        // What the adapter has told the robot to use.
-        0.5
+        SeekurModel::default().braking[0]
     }
 
     fn limits(&self) -> [f64; 3] {

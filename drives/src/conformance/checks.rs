@@ -24,11 +24,13 @@ pub(super) fn moves(told: &Told, is_arc: bool) -> bool {
 }
 
 fn cruising(bench: &dyn Bench) -> (f64, f64) {
-    if bench.is_arc() {
+    let [v_max, _, turn_max] = bench.limits();
+    let (v, turn): (f64, f64) = if bench.is_arc() {
         (0.5, 0.8)
     } else {
         (0.6, 0.3)
-    }
+    };
+    (v.min(0.9 * v_max), turn.min(0.9 * turn_max))
 }
 
 /// Says that the adapter did not come to drive at all.
@@ -177,7 +179,7 @@ fn silent_stop(rig: &mut Rig, bench: &dyn Bench, v: f64, turn: f64) -> Result<f6
 type Incident = fn(&mut Rig, &dyn Bench);
 
 pub(super) fn zero_first(bench: &dyn Bench, twin: Option<Twin>) -> Outcome {
-    let incidents: [(&str, Incident); 7] = [
+    let incidents: [(&str, Incident); 8] = [
         ("link cut both ways", |rig, bench| {
             cut(rig, bench, true, true)
         }),
@@ -199,17 +201,26 @@ pub(super) fn zero_first(bench: &dyn Bench, twin: Option<Twin>) -> Outcome {
             rig.idle(Duration::from_ms(60));
             rig.robot.bump(false);
         }),
+        ("stop button", |rig, _| {
+            rig.robot.press_stop(true);
+            rig.idle(Duration::from_ms(60));
+            rig.robot.press_stop(false);
+        }),
     ];
+    let mut kinds = 0;
     for (name, incident) in incidents {
-        if name == "bumped" && bench.is_arc() {
-            continue; // the car has no bumpers
+        if matches!(name, "bumped" | "stop button") && bench.is_arc() {
+            continue; // the car has neither
         }
+        kinds += 1;
         let mut rig = Rig::new(bench, twin);
         let (v, turn) = started(&mut rig, bench)?;
         incident(&mut rig, bench);
         after(&mut rig, bench, name, v, turn)?;
     }
-    Ok("7 kinds of interruption: zero first, motion only after a decision for rest".to_owned())
+    Ok(format!(
+        "{kinds} kinds of interruption: zero first, motion only after a decision for rest"
+    ))
 }
 
 fn cut(rig: &mut Rig, bench: &dyn Bench, robot: bool, host: bool) {

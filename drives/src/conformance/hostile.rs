@@ -8,6 +8,8 @@ use super::checks::{fail, moves, started};
 use super::rig::{Random, Rig, Spoiler};
 use super::twins::Twin;
 
+const NONSENSE: &str = "well-framed nonsense";
+
 const SPOILERS: [(&str, Spoiler); 6] = [
     ("random bytes between packets", |random, mut bytes| {
         let count = random.below(12);
@@ -40,7 +42,7 @@ const SPOILERS: [(&str, Spoiler); 6] = [
         }
         bytes
     }),
-    ("well-framed nonsense", |random, mut bytes| {
+    (NONSENSE, |random, mut bytes| {
         if random.below(10) == 0 {
             let data: Vec<u8> = (0..random.below(60)).map(|_| random.next() as u8).collect();
             if let Some(packet) = crate::arcos::Packet::new(random.next() as u8, &data) {
@@ -60,11 +62,52 @@ pub(super) fn bytes(bench: &dyn Bench, twin: Option<Twin>) -> Result<String, Fai
             rounds += 1;
             at_rest(bench, twin, name, spoiler, seed)?;
             in_motion(bench, twin, name, spoiler, seed)?;
+            // Whoever frames his nonsense well towards the robot commands it.
+            if name != NONSENSE {
+                towards_robot(bench, twin, name, spoiler, seed)?;
+            }
         }
     }
     Ok(format!(
-        "{rounds} spoiled streams at rest and as many in motion"
+        "{rounds} spoiled streams at rest, as many in motion, and all but well-framed ones towards the robot"
     ))
+}
+
+/// The robot hears spoiled bytes: it must not move at rest, nor faster than was decided.
+fn towards_robot(
+    bench: &dyn Bench,
+    twin: Option<Twin>,
+    name: &str,
+    spoiler: Spoiler,
+    seed: u64,
+) -> Result<(), Failure> {
+    let mut rig = Rig::new(bench, twin);
+    rig.random = Random::new(seed);
+    rig.spoil_said = Some(spoiler);
+    for _ in 0..40 {
+        rig.drive.enable(rig.now);
+        rig.decide(0.0, 0.0, Duration::from_ms(100));
+    }
+    if rig.fastest.iter().any(|rate| *rate > 1e-9) {
+        let seen = format!("{name} towards the robot, at rest: {:?}", rig.fastest);
+        return Err(fail("DRIVE-09", seen));
+    }
+    let mut rig = Rig::new(bench, twin);
+    let (v, turn) = started(&mut rig, bench)?;
+    rig.random = Random::new(seed);
+    rig.spoil_said = Some(spoiler);
+    rig.fastest = [0.0; 2];
+    rig.decide(v, turn, Duration::from_ms(2000));
+    if rig.fastest[0] > v + 0.03 || rig.robot.truth().twist[0] < -0.03 {
+        let seen = format!("{name} towards the robot, in motion: {:?}", rig.fastest);
+        return Err(fail("DRIVE-09", seen));
+    }
+    rig.spoil_said = None;
+    rig.decide(0.0, 0.0, Duration::from_ms(3000));
+    if !rig.start() {
+        return Err(fail("DRIVE-09", format!("{name}: never drives again")));
+    }
+    Ok(())
 }
 
 /// From the first byte on, and with rest decided: nothing but zero may be said.

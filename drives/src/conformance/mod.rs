@@ -9,6 +9,7 @@ mod bench;
 mod checks;
 mod curves;
 mod hostile;
+mod own;
 mod ranges;
 mod rig;
 mod silence;
@@ -17,6 +18,7 @@ mod twins;
 
 pub use bench::{Bench, CarBench, SeekurBench};
 pub use curves::speed_and_steering;
+pub use own::FileBench;
 pub use rig::Rig;
 pub use taps::{Tap, Told};
 pub use twins::{TWINS, Twin};

@@ -53,6 +53,10 @@ pub(super) fn scale(bench: &dyn Bench, twin: Option<Twin>) -> Outcome {
     let mut cases = 0;
     for v_step in -20..=20 {
         let v = f64::from(v_step) / 20.0 * if v_step < 0 { back } else { ahead };
+        if v_step == 0 {
+            // Whoever cannot measure a direction does not change it in motion.
+            rig.decide(0.0, 0.0, Duration::from_ms(4000));
+        }
         for turn_step in [-10, -7, -4, -1, 0, 1, 4, 7, 10] {
             let turn = f64::from(turn_step) / 10.0 * turn_max;
             let since = rig.now;

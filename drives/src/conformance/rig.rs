@@ -26,8 +26,12 @@ pub struct Rig {
     pub to_host: bool,
     /// What goes to the host instead of, or besides, the robot's bytes.
     pub spoil: Option<Spoiler>,
+    /// What goes to the robot instead of the adapter's bytes.
+    pub spoil_said: Option<Spoiler>,
     /// Its randomness.
     pub random: Random,
+    /// Fastest the robot really was, m/s, and fastest it turned, rad/s.
+    pub fastest: [f64; 2],
     /// Set points that reached the robot.
     pub told: Vec<Told>,
     /// Errors the adapter reported.
@@ -90,7 +94,9 @@ impl Rig {
             to_robot: true,
             to_host: true,
             spoil: None,
+            spoil_said: None,
             random: Random::new(7),
+            fastest: [0.0; 2],
             told: Vec::new(),
             faults: Vec::new(),
             feedback: None,
@@ -130,6 +136,10 @@ impl Rig {
     fn millisecond(&mut self, awake: bool) {
         self.now = self.now.plus(Duration::from_ms(1));
         self.robot.step(self.now);
+        let twist = self.robot.truth().twist;
+        for (fastest, rate) in self.fastest.iter_mut().zip(twist) {
+            *fastest = fastest.max(rate.abs());
+        }
         let mut bytes = self.robot.outgoing();
         if !self.to_host {
             bytes.clear();
@@ -156,7 +166,11 @@ impl Rig {
             };
             if self.to_robot {
                 self.told.extend(self.tap.hear(said, self.now));
-                self.robot.receive(said, self.now);
+                let heard = match self.spoil_said {
+                    Some(spoil) => spoil(&mut self.random, said.to_vec()),
+                    None => said.to_vec(),
+                };
+                self.robot.receive(&heard, self.now);
             }
         }
     }

@@ -1,12 +1,11 @@
 //! Listeners on the wires.
 
+//!
+//! They read the wire with the emulators' means and with nothing of the adapters'.
+
 use haltline::time::Instant;
 
-use crate::arcos::command::{number, vel2_sides};
-use crate::arcos::{Argument, Command, Deframer, VEL2_DIVISOR};
-use crate::car::curve;
-use crate::uc::command::{DriveLevel, Request, SteeringLevel};
-use crate::uc::line::LineReader;
+use crate::emulator::wire::{Ear, steady_speed, wheel_angle};
 
 /// A set point heard on the wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,8 +26,13 @@ pub trait Tap {
     fn hear(&mut self, bytes: &[u8], now: Instant) -> Vec<Told>;
 }
 
+/// Command numbers and the scale of VEL2 (ARCOS tables).
+const VEL: u8 = 11;
+const RVEL: u8 = 21;
+const VEL2: u8 = 32;
+
 pub(super) struct ArcosTap {
-    deframer: Deframer,
+    ear: Ear,
     skid: f64,
     speed: f64,
 }
@@ -36,7 +40,7 @@ pub(super) struct ArcosTap {
 impl ArcosTap {
     pub(super) fn new(skid: f64) -> Self {
         Self {
-            deframer: Deframer::default(),
+            ear: Ear::default(),
             skid,
             speed: 0.0,
         }
@@ -46,36 +50,28 @@ impl ArcosTap {
 impl Tap for ArcosTap {
     fn hear(&mut self, bytes: &[u8], now: Instant) -> Vec<Told> {
         let mut told = Vec::new();
-        for byte in bytes {
-            let Some(Ok(packet)) = self.deframer.push(*byte, now) else {
-                continue;
-            };
-            let Some(Command {
-                number,
-                argument: Argument::Int(value),
-            }) = Command::decode(&packet)
-            else {
-                continue;
-            };
-            let mut say = |linear: f64, turn: f64| {
-                told.push(Told {
-                    at: now,
-                    linear,
-                    turn: turn * self.skid,
-                    brake: 0,
-                });
-            };
-            match number {
-                number::VEL => self.speed = f64::from(value) * 1e-3,
-                number::RVEL => say(self.speed, f64::from(value).to_radians()),
-                number::VEL2 => {
-                    let (left, right) = vel2_sides(value).unwrap_or_default();
-                    let side = |count: i8| f64::from(count) * f64::from(VEL2_DIVISOR) * 1e-3;
-                    let turn = (side(right) - side(left)) / 2.0 * 5.6;
-                    say(f64::midpoint(side(left), side(right)), turn);
+        for heard in self.ear.hear(bytes) {
+            let Some(value) = heard.value else { continue };
+            let (linear, turn) = match heard.number {
+                VEL => {
+                    self.speed = f64::from(value) * 1e-3;
+                    continue;
                 }
-                _ => {}
-            }
+                RVEL => (self.speed, f64::from(value).to_radians()),
+                VEL2 => {
+                    // A signed byte for each side, 20 mm/s a count, right in the low one.
+                    let side = |byte: i32| f64::from((byte + 128).rem_euclid(256) - 128) * 0.02;
+                    let (left, right) = (side(value >> 8), side(value));
+                    (f64::midpoint(left, right), (right - left) / 2.0 * 5.6)
+                }
+                _ => continue,
+            };
+            told.push(Told {
+                at: now,
+                linear,
+                turn: turn * self.skid,
+                brake: 0,
+            });
         }
         told
     }
@@ -83,41 +79,45 @@ impl Tap for ArcosTap {
 
 #[derive(Default)]
 pub(super) struct UcTap {
-    lines: LineReader,
+    line: Vec<u8>,
     curvature: f64,
+}
+
+impl UcTap {
+    fn line(&mut self, line: &str, now: Instant) -> Option<Told> {
+        let words: Vec<&str> = line.split_ascii_whitespace().collect();
+        let twice =
+            |one: &str, other: &str| -> Option<i16> { one.parse().ok().filter(|_| one == other) };
+        let (linear, brake) = match words.as_slice() {
+            ["!STEER", one, other] => {
+                self.curvature = wheel_angle(twice(one, other)?).tan() / 0.25;
+                return None;
+            }
+            ["!DRV", "F", one, other] => match twice(one, other)? {
+                level if level < 0 => (0.0, -level),
+                level => (steady_speed(level), 0),
+            },
+            ["!DRV", "B", one, other] => (steady_speed(-twice(one, other)?), 0),
+            _ => return None,
+        };
+        Some(Told {
+            at: now,
+            linear,
+            turn: self.curvature,
+            brake,
+        })
+    }
 }
 
 impl Tap for UcTap {
     fn hear(&mut self, bytes: &[u8], now: Instant) -> Vec<Told> {
         let mut told = Vec::new();
         for byte in bytes {
-            let Some(Ok(line)) = self.lines.push(*byte) else {
-                continue;
-            };
-            let Ok(request) = Request::parse(line.as_slice()) else {
-                continue;
-            };
-            let number = |index| {
-                let value = request.checked_number(index).ok();
-                value.and_then(|value| i16::try_from(value).ok())
-            };
-            if request.is(0, "STEER") {
-                let level = number(1).and_then(SteeringLevel::new);
-                let angle = level.map_or(0.0, |level| curve::STEER.angle(level));
-                self.curvature = angle.tan() / 0.25;
-            }
-            let level = match () {
-                () if request.is(1, "F") => number(2).and_then(DriveLevel::forward),
-                () if request.is(1, "B") => number(2).and_then(DriveLevel::reverse),
-                () => None,
-            };
-            if let Some(level) = level.filter(|_| request.is(0, "DRV")) {
-                told.push(Told {
-                    at: now,
-                    linear: curve::SPEED.speed(level),
-                    turn: self.curvature,
-                    brake: level.brake(),
-                });
+            if *byte == b'\n' {
+                let line = core::mem::take(&mut self.line);
+                told.extend(self.line(&String::from_utf8_lossy(&line), now));
+            } else {
+                self.line.push(*byte);
             }
         }
         told

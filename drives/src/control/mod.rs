@@ -1,17 +1,19 @@
 //! The loop that drives a robot: fixed rate, every deadline accounted for, every end a stop.
 
 mod types;
+mod wires;
 
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::Ordering;
-use std::time::Duration as Wall;
 
-use haltline::decision::{Decision, Reason, StopStatus};
-use haltline::time::{Duration, Instant};
+use haltline::decision::{Decision, StopStatus};
+use haltline::time::Instant;
 use haltline_robots::Robot;
 use haltline_scenarios::controller::{Controller, RobotKernel, TickInputs, tick};
 use haltline_scenarios::drive::SetPoint;
+use haltline_scenarios::math::Pose;
+use haltline_scenarios::navigation::Said;
 use haltline_scenarios::odometry::RawOdometry;
 use haltline_scenarios::proposer::RawCommand;
 use haltline_scenarios::sensor::RawScan;
@@ -21,14 +23,7 @@ use crate::drive::{Drive, DriveError, Feedback, State};
 use crate::eye::Eye;
 use crate::link::Link;
 
-pub use types::{Account, Ending, Operator, Tick, View};
-
-/// How often the wire is served between two ticks.
-const SERVE: Wall = Wall::from_millis(1);
-/// How often a lost link is tried again.
-const RETRY: Duration = Duration::from_ms(500);
-/// Longest farewell.
-const FAREWELL: Duration = Duration::from_ms(8000);
+pub use types::{Account, Ending, Operator, Tick, View, Wish};
 
 /// Opens the robot's link; called again after a loss.
 pub type Opener = Box<dyn FnMut() -> io::Result<Box<dyn Link>>>;
@@ -42,18 +37,23 @@ pub struct Control {
     link: Option<Box<dyn Link>>,
     retry: Instant,
     eye: Eye,
-    eye_open: bool,
+    eye_opener: Option<Opener>,
+    eye_retry: Instant,
     clock: Clock,
     unsent: Vec<u8>,
     scans: Vec<RawScan>,
     feedback: Feedback,
     fresh: bool,
     decision: Option<Decision>,
+    said: Option<Said>,
     resetting: bool,
     /// When the controller's own route was ordered: after the last release of a latched stop.
     ordered: Option<Instant>,
     account: Account,
     fault: Option<DriveError>,
+    /// What was wrong at the tick before.
+    objected: Option<DriveError>,
+    opened: bool,
 }
 
 impl Control {
@@ -80,28 +80,40 @@ impl Control {
             link,
             retry: clock.now(),
             eye,
-            eye_open: true,
+            eye_opener: None,
+            eye_retry: clock.now(),
             clock,
             unsent: Vec::new(),
             scans: Vec::new(),
             feedback: Feedback::default(),
             fresh: false,
             decision: None,
+            said: None,
             resetting: false,
             ordered: None,
             account: Account::default(),
             fault: None,
+            objected: None,
+            opened: false,
         })
+    }
+
+    /// How to connect to the scanner again after a loss; it must not take longer than 100 ms or so.
+    #[must_use]
+    pub fn with_scanner_opener(mut self, opener: Opener) -> Self {
+        self.eye_opener = Some(opener);
+        self
     }
 
     /// Drives until somebody ends it; always says good-bye to the robot.
     ///
-    /// - `propose`: the motion somebody wants, m/s with rad/s or 1/m; `None` ends the drive
+    /// - `propose`: what somebody wants; asked in every tick, and not heard where the controller has
+    ///   a route of its own
     /// - `observe`: called after each tick
     pub fn run(
         &mut self,
         operator: &Operator,
-        mut propose: impl FnMut(&View) -> Option<[f64; 2]>,
+        mut propose: impl FnMut(&View) -> Wish,
         mut observe: impl FnMut(&Tick<'_>),
     ) -> Ending {
         let driven = catch_unwind(AssertUnwindSafe(|| {
@@ -120,7 +132,7 @@ impl Control {
     fn ticks(
         &mut self,
         operator: &Operator,
-        propose: &mut dyn FnMut(&View) -> Option<[f64; 2]>,
+        propose: &mut dyn FnMut(&View) -> Wish,
         observe: &mut dyn FnMut(&Tick<'_>),
     ) -> Ending {
         let timing = &self.robot.config.timing;
@@ -143,11 +155,13 @@ impl Control {
                 now,
                 feedback: self.feedback,
                 decision: self.decision,
+                said: self.said.clone(),
             };
-            let Some(wanted) = propose(&view) else {
+            let wish = propose(&view);
+            if wish == Wish::End {
                 return Ending::Finished;
-            };
-            self.tick(operator, wanted, now, observe);
+            }
+            self.tick(operator, wish, now, observe);
         }
         Ending::Asked
     }
@@ -155,32 +169,41 @@ impl Control {
     fn tick(
         &mut self,
         operator: &Operator,
-        wanted: [f64; 2],
+        wish: Wish,
         now: Instant,
         observe: &mut dyn FnMut(&Tick<'_>),
     ) {
         self.account.ticks += 1;
+        self.opened |= self.drive.state() != State::Connecting;
         self.resetting |= operator.reset.swap(false, Ordering::Relaxed);
         if self.resetting && self.drive.state() == State::Disabled {
             self.drive.enable(now);
         }
-        let inputs = self.inputs(operator, wanted, now);
+        let inputs = self.inputs(operator, wish, now);
         let decision = tick(self.controller.as_mut(), &self.robot, &inputs, now.as_us());
         if decision.status == StopStatus::Latched {
             self.ordered = None;
-        } else {
+        } else if self.drive.state() == State::Driving {
             self.resetting = false;
         }
         self.decision = Some(decision);
-        let refused = self.drive.send(&decision, now).err();
-        self.serve(now);
-        let fault = refused.or(self.fault.take());
-        self.account.faults += u64::from(fault.is_some());
+        let [x, y, theta] = self.feedback.pose;
+        self.said = self.controller.said(&Pose::new(x, y, theta), 0);
+        // By the clock of the sending: a decision that took too long has expired by now.
+        let sent = self.clock.now();
+        let refused = self.drive.send(&decision, sent).err();
+        self.serve(sent);
+        // That decisions are not sent says less than why.
+        let fault = self.fault.take().or(refused);
+        self.account.faults += u64::from(fault.is_some() && fault != self.objected);
+        self.objected = fault;
         observe(&Tick {
             inputs: &inputs,
             now,
             decision,
+            said: self.said.clone(),
             state: self.drive.state(),
+            resetting: self.resetting,
             feedback: self.feedback,
             fault,
             scan_fault: self.eye.fault(),
@@ -188,15 +211,24 @@ impl Control {
         });
     }
 
-    fn inputs(&mut self, operator: &Operator, [v, turn]: [f64; 2], now: Instant) -> TickInputs {
+    fn inputs(&mut self, operator: &Operator, wish: Wish, now: Instant) -> TickInputs {
         let steered = matches!(
             self.robot.values.kinematics,
             haltline_robots::Kinematics::Ackermann(_)
         );
-        let motion = if steered {
-            SetPoint::Arc { v, curvature: turn }
-        } else {
-            SetPoint::Twist { v, omega: turn }
+        let motion = |[v, turn]: [f64; 2]| {
+            if steered {
+                SetPoint::Arc { v, curvature: turn }
+            } else {
+                SetPoint::Twist { v, omega: turn }
+            }
+        };
+        let command = match wish {
+            Wish::Motion(stamp, wanted) => Some(RawCommand {
+                stamp_us: stamp.as_us(),
+                motion: motion(wanted),
+            }),
+            Wish::Nothing | Wish::End => None,
         };
         let odometry = self.fresh.then_some(RawOdometry {
             stamp_us: self.feedback.stamp.as_us(),
@@ -210,101 +242,28 @@ impl Control {
         let released = self
             .decision
             .is_some_and(|last| last.status != StopStatus::Latched);
-        if own_route && released {
-            self.ordered = self.ordered.or(Some(now));
-        }
-        let ready = self.resetting && self.drive.state() == State::Driving;
+        // A drive that does not obey is not asked to: the kernel would only find that it does not.
+        let obeys = self.drive.state() == State::Driving;
+        self.ordered = match self.ordered {
+            _ if !obeys => None,
+            None if own_route && released => Some(now),
+            ordered => ordered,
+        };
+        let ready = self.resetting && obeys;
         TickInputs {
             scans: core::mem::take(&mut self.scans),
             odometry,
-            command: (!own_route).then_some(RawCommand {
-                stamp_us: now.as_us(),
-                motion,
-            }),
+            command: command.filter(|_| !own_route && obeys),
             order_us: self.ordered.map(Instant::as_us),
             emergency_stop: operator.emergency.load(Ordering::Relaxed),
             reset_us: ready.then_some(now.as_us()),
         }
     }
 
-    fn serve_until(&mut self, due: Instant) {
-        loop {
-            let now = self.clock.now();
-            self.serve(now);
-            let left = due.since(now).unwrap_or_default();
-            if left == Duration::ZERO {
-                return;
-            }
-            std::thread::sleep(SERVE.min(Wall::from_micros(left.as_us())));
-        }
-    }
-
-    /// Moves bytes both ways; never waits.
-    fn serve(&mut self, now: Instant) {
-        if self.eye_open && self.eye.exchange(now, &mut self.scans).is_err() {
-            // No scans any more: the kernel stops by itself.
-            self.eye_open = false;
-        }
-        if self.link.is_none() && now >= self.retry {
-            self.retry = now.plus(RETRY);
-            self.link = (self.opener)().ok();
-            if self.link.is_some() {
-                self.account.reconnections += 1;
-                self.unsent.clear();
-                self.drive.reconnected(now);
-            }
-        }
-        if self.exchange(now).is_err() {
-            self.link = None;
-            self.unsent.clear();
-            self.retry = now.plus(RETRY);
-        }
-        self.fault = self.drive.fault().or(self.fault.take());
-        if let Some(feedback) = self.drive.feedback() {
-            self.feedback = feedback;
-            self.fresh = true;
-        }
-    }
-
-    fn exchange(&mut self, now: Instant) -> io::Result<()> {
-        let Some(link) = &mut self.link else {
-            return Ok(());
-        };
-        let mut heard = Vec::new();
-        let read = link.read(&mut heard);
-        self.drive.receive(&heard, now);
-        read?;
-        self.drive.tick(now);
-        // What the wire does not take is not queued: old set points must not pile up behind it.
-        let mut room = [0; 512];
-        if self.unsent.is_empty() {
-            let count = self.drive.outgoing(&mut room, now);
-            self.unsent
-                .extend_from_slice(room.get(..count).unwrap_or_default());
-        }
-        let written = link.write(&self.unsent)?;
-        self.unsent.drain(..written);
-        Ok(())
-    }
-
-    /// Ramps to rest, motors off, good-bye; `false` if the robot could not be reached.
-    fn farewell(&mut self) -> bool {
-        let start = self.clock.now();
-        self.drive.shut_down(start);
-        loop {
-            let now = self.clock.now();
-            if self.exchange(now).is_err() {
-                return false;
-            }
-            let waited = now.since(start).unwrap_or_default();
-            if self.drive.state() == State::Closed && self.unsent.is_empty() {
-                return self.link.is_some();
-            }
-            if self.link.is_none() || waited > FAREWELL {
-                return false;
-            }
-            std::thread::sleep(SERVE);
-        }
+    /// Whether the robot has ever answered as a robot of this kind does.
+    #[must_use]
+    pub const fn was_open(&self) -> bool {
+        self.opened
     }
 
     /// Deadlines and incidents so far.
@@ -326,10 +285,4 @@ pub fn shield(robot: &Robot) -> io::Result<Box<dyn Controller>> {
             format!("the kernel refuses the robot: {error:?}"),
         )),
     }
-}
-
-/// Whether a decision holds the robot for lack of an operator.
-#[must_use]
-pub fn waits_for_operator(decision: &Decision) -> bool {
-    decision.status == StopStatus::Latched && decision.reason != Reason::EmergencyStopLine
 }

@@ -6,15 +6,29 @@ use std::io;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use haltline::decision::Decision;
+use haltline::decision::{Decision, Reason, StopStatus};
+use haltline::input::Motion;
 use haltline::time::Instant;
 use haltline_scenarios::controller::TickInputs;
+use haltline_scenarios::navigation::Said;
 
 use crate::drive::{DriveError, Feedback, State};
 use crate::eye::ScanFault;
 
+/// What a proposer wants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wish {
+    /// This motion, m/s with rad/s, or with 1/m for a steered robot, wanted at that moment. The
+    /// kernel refuses it once it is too old.
+    Motion(Instant, [f64; 2]),
+    /// Nothing: for lack of a command the kernel stops.
+    Nothing,
+    /// The drive ends.
+    End,
+}
+
 /// What a proposer sees.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct View {
     /// Now.
     pub now: Instant,
@@ -22,10 +36,12 @@ pub struct View {
     pub feedback: Feedback,
     /// The kernel's last decision.
     pub decision: Option<Decision>,
+    /// What the kernel last said of its own route, if it has one.
+    pub said: Option<Said>,
 }
 
 /// One tick, for status lines and traces.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Tick<'a> {
     /// What the kernel was given.
     pub inputs: &'a TickInputs,
@@ -33,8 +49,12 @@ pub struct Tick<'a> {
     pub now: Instant,
     /// What the kernel decided.
     pub decision: Decision,
+    /// What the kernel says of its own route, if it has one.
+    pub said: Option<Said>,
     /// How far the adapter is.
     pub state: State,
+    /// A reset is under way.
+    pub resetting: bool,
     /// Newest feedback.
     pub feedback: Feedback,
     /// What the adapter objected to since the last tick.
@@ -63,8 +83,28 @@ impl fmt::Display for Tick<'_> {
             .as_us()
             / 1000;
         writeln!(out, "drive     {:?}", self.state)?;
-        writeln!(out, "decision  {action:?}: {reason:?} ({status:?})")?;
-        writeln!(out, "set point {:?}", self.decision.setpoint)?;
+        write!(out, "decision  {action:?}")?;
+        if reason != Reason::None {
+            write!(out, " for {reason:?}")?;
+        }
+        if let Some([x, y]) = self.blocked() {
+            write!(out, ", point {x:+.2} m ahead, {y:+.2} m left")?;
+        }
+        writeln!(out, " ({status:?})")?;
+        if let Some(said) = &self.said {
+            let reason = said.progress.reason.as_deref().unwrap_or_default();
+            writeln!(out, "route     {} {reason}", said.progress.kind)?;
+        }
+        writeln!(out, "set point {}", Words(self.decision.setpoint))?;
+        if let Some(tube) = self.decision.verdict.filter(|v| v.refusal.is_none()) {
+            writeln!(
+                out,
+                "tube      {:.3} m to rest, {:.2} s, margin {:.3} m",
+                f64::from(tube.stopping_path.as_um()) * 1e-6,
+                tube.stopping_time.as_us() as f64 * 1e-6,
+                f64::from(tube.budget.total().as_um()) * 1e-6
+            )?;
+        }
         writeln!(out, "measured  {v:+.3} m/s {w:+.3} rad/s, {age_ms} ms old")?;
         writeln!(
             out,
@@ -96,6 +136,41 @@ impl fmt::Display for Tick<'_> {
     }
 }
 
+impl Tick<'_> {
+    /// The point that decided against a motion, metres from the rotation centre.
+    fn blocked(&self) -> Option<[f64; 2]> {
+        let verdict = self.decision.verdict.filter(|it| it.refusal.is_some())?;
+        let point = verdict.point?;
+        Some([point.x_mm, point.y_mm].map(|mm| f64::from(mm) * 1e-3))
+    }
+
+    /// Whether nothing moves before the operator resets: the stop is latched, or the drive's motors
+    /// are off and nobody asks for them.
+    #[must_use]
+    pub fn waits_for_operator(&self) -> bool {
+        let off = self.state == State::Disabled && !self.resetting;
+        off || (self.decision.status == StopStatus::Latched && !self.resetting)
+    }
+}
+
+/// A motion in words.
+struct Words(Motion);
+
+impl fmt::Display for Words {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (linear, turn, unit) = match self.0 {
+            Motion::Twist(twist) => (twist.linear, twist.angular.as_urad_per_s(), "rad/s"),
+            Motion::Arc { linear, curvature } => (linear, curvature.as_urad_per_m(), "/m"),
+        };
+        write!(
+            out,
+            "{:+.3} m/s {:+.3} {unit}",
+            f64::from(linear.as_um_per_s()) * 1e-6,
+            f64::from(turn) * 1e-6
+        )
+    }
+}
+
 /// Deadlines and incidents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Account {
@@ -107,7 +182,7 @@ pub struct Account {
     pub latest_us: u64,
     /// Links lost and opened again.
     pub reconnections: u64,
-    /// Faults reported by the adapter.
+    /// Faults reported by the adapter; one that stays is counted once.
     pub faults: u64,
 }
 
@@ -130,21 +205,25 @@ pub struct Operator {
     /// Leave.
     pub end: Arc<AtomicBool>,
     /// Reset the kernel and switch the motors on; taken once.
-    pub reset: AtomicBool,
+    pub reset: Arc<AtomicBool>,
     /// Emergency stop line.
     pub emergency: AtomicBool,
 }
 
 impl Operator {
-    /// An operator whose `end` is set by Ctrl-C and by SIGTERM.
+    /// An operator whose `end` is set by Ctrl-C, Ctrl-\\, SIGTERM and the loss of the terminal, and
+    /// `reset` by SIGUSR1.
     ///
     /// # Errors
     /// The handlers cannot be installed.
     pub fn with_signals() -> io::Result<Self> {
         let operator = Self::default();
-        for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
+        for signal in [SIGINT, SIGTERM, SIGHUP, SIGQUIT] {
             signal_hook::flag::register(signal, Arc::clone(&operator.end))?;
         }
+        let reset = Arc::clone(&operator.reset);
+        signal_hook::flag::register(signal_hook::consts::SIGUSR1, reset)?;
         Ok(operator)
     }
 }

@@ -3,7 +3,7 @@
 use haltline::time::{Duration, Instant};
 
 use super::daq::{Sensors, Streams};
-use crate::uc::command::{Request, integer};
+use crate::uc::command::Request;
 use crate::uc::line::LineReader;
 use crate::uc::{FORWARD, REVERSE, STEERING, error};
 
@@ -26,6 +26,7 @@ const NEUTRAL_PULSE: Duration = Duration::from_ms(100);
 #[derive(Clone, Debug)]
 pub(super) struct Board {
     stx: bool,
+    heeds_dead_man: bool,
     lines: LineReader,
     out: Vec<u8>,
     mode: Mode,
@@ -35,6 +36,8 @@ pub(super) struct Board {
     /// Last successful `!DRV`.
     driven: Instant,
     session: u32,
+    /// The last number it was given; a command without one takes this (a fault of the firmware).
+    stale: i32,
     /// The motor may turn backwards: the sequence is through.
     reversed: bool,
     /// When reverse was first asked for.
@@ -42,6 +45,17 @@ pub(super) struct Board {
     now: Instant,
     pub(super) sensors: Sensors,
     streams: Streams,
+}
+
+/// Digit after digit: what is none silently gives a wrong number, and no error.
+fn digits(word: &str) -> i32 {
+    let (sign, digits) = word.strip_prefix('-').map_or((1, word), |rest| (-1, rest));
+    let value = digits.bytes().fold(0_i32, |value, byte| {
+        value
+            .wrapping_mul(10)
+            .wrapping_add(i32::from(byte) - i32::from(b'0'))
+    });
+    value.wrapping_mul(sign)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,9 +67,10 @@ enum Mode {
 }
 
 impl Board {
-    pub(super) fn new(stx: bool, now: Instant) -> Self {
+    pub(super) fn new(stx: bool, heeds_dead_man: bool, now: Instant) -> Self {
         Self {
             stx,
+            heeds_dead_man,
             lines: LineReader::default(),
             out: Vec::new(),
             mode: Mode::Off,
@@ -64,6 +79,7 @@ impl Board {
             dead_man_ms: 0,
             driven: now,
             session: 0,
+            stale: 0,
             reversed: false,
             reversing: None,
             now,
@@ -180,7 +196,7 @@ impl Board {
             "D" => (Mode::Direct, -500..=500),
             _ => return Err(error::WRONG_USAGE),
         };
-        let value = request.checked_number(2)?;
+        let value = self.number(request, 2)?;
         // Out of range: refused, and the set point before stays in force.
         let value = i16::try_from(value).map_err(|_| error::OUT_OF_RANGE)?;
         if !range.contains(&value) {
@@ -194,6 +210,16 @@ impl Board {
         }
         (self.mode, self.value, self.driven) = (mode, value, self.now);
         Ok(format!("{} {value}", word.to_ascii_uppercase()))
+    }
+
+    /// The number in word `index`, which may be given twice as a check.
+    fn number(&mut self, request: &Request<'_>, index: usize) -> Result<i32, u16> {
+        let first = request.word(index).map_or(self.stale, digits);
+        self.stale = first;
+        match request.word(index + 1).map(digits) {
+            Some(second) if second != first => Err(error::CORRUPTED),
+            _ => Ok(first),
+        }
     }
 
     fn drive_state(&self, request: &Request<'_>) -> String {
@@ -219,9 +245,9 @@ impl Board {
             self.steering = None;
             return Ok("OFF".to_owned());
         }
-        let value = request.checked_number(1)?;
+        let value = self.number(request, 1)?;
         let value = i16::try_from(value).map_err(|_| error::OUT_OF_RANGE)?;
-        if !STEERING.contains(&value) || integer(request.word(1).unwrap_or_default()).is_none() {
+        if !STEERING.contains(&value) {
             return Err(error::OUT_OF_RANGE);
         }
         self.steering = Some(value);
@@ -233,7 +259,7 @@ impl Board {
         self.now = now;
         let silent = now.since(self.driven).unwrap_or_default();
         let most = Duration::from_ms(u64::from(self.dead_man_ms) + 1);
-        if self.dead_man_ms > 0 && silent > most {
+        if self.heeds_dead_man && self.dead_man_ms > 0 && silent > most {
             // Neutral: it rolls, does not brake, and the steering stays.
             self.value = 0;
         }

@@ -1,5 +1,7 @@
 //! A model car: motor, brake, steering servo, wheel sensor, gyro.
 
+use std::sync::OnceLock;
+
 use haltline::time::{Duration, Instant};
 
 use super::Robot;
@@ -11,6 +13,8 @@ use super::motion::{Truth, steps};
 pub struct CarModel {
     /// Whether its board sends an STX (firmware 0.12.0 and later).
     pub sends_stx: bool,
+    /// Its dead-man switch does nothing, whatever it says.
+    pub ignores_dead_man: bool,
     /// Rear axle to front axle, metres.
     pub wheelbase_m: f64,
     /// Distance of the rear wheels, metres.
@@ -33,6 +37,7 @@ impl Default for CarModel {
     fn default() -> Self {
         Self {
             sends_stx: true,
+            ignores_dead_man: false,
             wheelbase_m: 0.25,
             track_m: 0.17,
             coasting: 0.3,
@@ -57,7 +62,7 @@ pub struct Car {
     wheel_angle: f64,
     /// Pulse width on its way to the servo.
     steered: (Instant, f64),
-    heard_twist: [f64; 2],
+    heard_at: Truth,
     truth: Truth,
     /// Path of the rear-left wheel since its last pulse.
     since_pulse_m: f64,
@@ -69,11 +74,11 @@ impl Car {
     pub fn new(model: CarModel, now: Instant) -> Self {
         Self {
             model,
-            board: Board::new(model.sends_stx, now),
+            board: Board::new(model.sends_stx, !model.ignores_dead_man, now),
             lived: now,
             wheel_angle: 0.0,
             steered: (now, 0.0),
-            heard_twist: [0.0; 2],
+            heard_at: Truth::default(),
             truth: Truth {
                 pose: model.start,
                 twist: [0.0; 2],
@@ -145,7 +150,7 @@ impl Car {
 
 /// Speed at which the car settles for a level, m/s: the measured lines of DCAD 2018, read off the
 /// plot (friction holds the car below about 105 forward and 116 backward), not the printed signs.
-fn steady_speed(level: i16) -> f64 {
+pub(crate) fn steady_speed(level: i16) -> f64 {
     let level = f64::from(level);
     if level > 0.0 {
         ((level - 104.623_299) / 477.518_514).max(0.0)
@@ -156,8 +161,8 @@ fn steady_speed(level: i16) -> f64 {
 
 /// Angle at which the wheels settle for a steering level, rad, left positive: the polynomial of
 /// DCAD 2018 solved by walking along it.
-fn wheel_angle(level: i16) -> f64 {
-    let wanted = f64::from(level);
+pub(crate) fn wheel_angle(level: i16) -> f64 {
+    static ANGLES: OnceLock<Vec<f64>> = OnceLock::new();
     let printed = |x: f64| {
         196_814.0 * x.powi(6) - 50_518.0 * x.powi(5) - 47_550.0 * x.powi(4)
             + 5979.7 * x.powi(3)
@@ -165,11 +170,24 @@ fn wheel_angle(level: i16) -> f64 {
             - 2442.1 * x
             + 143.78
     };
-    let mut angle = -0.40;
-    while angle < 0.45 && printed(angle) > wanted {
-        angle += 1e-4;
-    }
-    angle
+    let walk = || {
+        // The highest level is the farthest to the right, where the walk begins.
+        let mut angle = -0.40;
+        let mut angles: Vec<f64> = (-1000..=1000)
+            .rev()
+            .map(|level| {
+                while angle < 0.45 && printed(angle) > f64::from(level) {
+                    angle += 1e-5;
+                }
+                angle
+            })
+            .collect();
+        angles.reverse();
+        angles
+    };
+    let angles = ANGLES.get_or_init(walk);
+    let index = usize::try_from(i32::from(level) + 1000).unwrap_or_default();
+    angles.get(index).copied().unwrap_or_default()
 }
 
 impl Robot for Car {
@@ -178,7 +196,7 @@ impl Robot for Car {
         let before = self.board.last_drive();
         self.board.receive(bytes, now);
         if self.board.last_drive() != before {
-            self.heard_twist = self.truth.twist;
+            self.heard_at = self.truth;
         }
     }
 
@@ -199,12 +217,16 @@ impl Robot for Car {
     }
 
     fn reboot(&mut self, now: Instant) {
-        self.board = Board::new(self.model.sends_stx, now);
+        self.board = Board::new(self.model.sends_stx, !self.model.ignores_dead_man, now);
     }
 
-    fn last_heard(&self) -> (Instant, [f64; 2]) {
-        (self.board.last_drive(), self.heard_twist)
+    fn last_heard(&self) -> (Instant, Truth) {
+        (self.board.last_drive(), self.heard_at)
     }
 
     fn bump(&mut self, _touching: bool) {}
+
+    fn press_stop(&mut self, _pressed: bool) {}
+
+    fn reopened(&mut self) {}
 }

@@ -14,7 +14,13 @@ mod seekur;
 
 pub use car::{Car, CarModel};
 pub use motion::Truth;
-pub use seekur::{Seekur, SeekurModel};
+pub use seekur::{OutOfOrder, Seekur, SeekurModel};
+
+/// How the emulators read their wires, for those who listen in.
+pub(crate) mod wire {
+    pub(crate) use super::car::{steady_speed, wheel_angle};
+    pub(crate) use super::seekur::Ear;
+}
 
 use haltline::time::Instant;
 
@@ -35,9 +41,15 @@ pub trait Robot {
     /// Switches it off and on again: everything volatile is lost, it rolls on.
     fn reboot(&mut self, now: Instant);
 
-    /// When the host last spoke as the watchdog understands it, and how fast the robot was then.
-    fn last_heard(&self) -> (Instant, [f64; 2]);
+    /// When the host last spoke as the watchdog understands it, and where the robot was then.
+    fn last_heard(&self) -> (Instant, Truth);
 
     /// Someone pushes against a bumper or lets go of it.
     fn bump(&mut self, touching: bool);
+
+    /// Someone presses its STOP button or releases it, if it has one.
+    fn press_stop(&mut self, pressed: bool);
+
+    /// The host's connection is a new one.
+    fn reopened(&mut self);
 }

@@ -17,11 +17,14 @@ use super::{Robot, Truth};
 use crate::clock::Clock;
 use crate::link::{self, Link, accepted, listen};
 
+/// Time between two reports.
+const REPORT_EVERY: haltline::time::Duration = haltline::time::Duration::from_ms(10);
+
 /// The wire to the host.
 enum Wire {
     /// A pseudo-terminal; its path never changes.
     Terminal(Box<dyn Link>),
-    /// A server; one host at a time, as the real ones.
+    /// A server; one host at a time, as the real ones: a second is turned away.
     Server(TcpListener, Option<Box<dyn Link>>),
 }
 
@@ -60,8 +63,8 @@ pub struct Report {
     pub truth: Truth,
     /// Since when it has heard nothing, seconds.
     pub unheard_s: f64,
-    /// Its speed and turn rate when it last heard something.
-    pub heard_twist: [f64; 2],
+    /// Where it was and how fast when it last heard something.
+    pub heard_at: Truth,
     /// Least distance to anything so far, metres.
     pub clearance_m: f64,
     /// It has touched something while it moved.
@@ -69,16 +72,20 @@ pub struct Report {
 }
 
 impl Report {
-    /// As one line of text: ten numbers.
+    /// As one line of text: fourteen numbers.
     #[must_use]
     pub fn line(&self) -> String {
-        let [x, y, theta] = self.truth.pose;
-        let [v, w] = self.truth.twist;
-        let [v0, w0] = self.heard_twist;
+        let words = |truth: &Truth| {
+            let [x, y, theta] = truth.pose;
+            let [v, w] = truth.twist;
+            format!("{x:.5} {y:.5} {theta:.5} {v:.5} {w:.5}")
+        };
         format!(
-            "{:.4} {x:.5} {y:.5} {theta:.5} {v:.5} {w:.5} {:.4} {v0:.5} {w0:.5} {:.5} {}",
+            "{:.4} {} {:.4} {} {:.5} {}",
             self.time_s,
+            words(&self.truth),
             self.unheard_s,
+            words(&self.heard_at),
             self.clearance_m,
             u8::from(self.contact),
         )
@@ -92,32 +99,23 @@ impl Report {
             .map(str::parse)
             .collect::<Result<_, _>>()
             .ok()?;
-        let &[
-            time_s,
-            x,
-            y,
-            theta,
-            v,
-            w,
-            unheard_s,
-            v0,
-            w0,
-            clearance_m,
-            contact,
-        ] = numbers.as_slice()
-        else {
-            return None;
-        };
-        Some(Self {
-            time_s,
-            truth: Truth {
+        let truth = |from: usize| -> Option<Truth> {
+            let &[x, y, theta, v, w] = numbers.get(from..from + 5)? else {
+                return None;
+            };
+            Some(Truth {
                 pose: [x, y, theta],
                 twist: [v, w],
-            },
-            unheard_s,
-            heard_twist: [v0, w0],
-            clearance_m,
-            contact: contact > 0.5,
+            })
+        };
+        (numbers.len() == 14).then_some(())?;
+        Some(Self {
+            time_s: *numbers.first()?,
+            truth: truth(1)?,
+            unheard_s: *numbers.get(6)?,
+            heard_at: truth(7)?,
+            clearance_m: *numbers.get(12)?,
+            contact: *numbers.get(13)? > 0.5,
         })
     }
 }
@@ -169,18 +167,22 @@ impl Process {
         Ok((process, Addresses { port, scan }))
     }
 
-    /// Runs until `end` is set; hands `report` a line every 10 ms.
+    /// Runs until `end` is set; hands `report` a line for every 10 ms of the robot's life.
+    ///
+    /// A machine that calls this late makes the robot hear late; what is reported is still true to
+    /// the time it names.
     pub fn run(&mut self, end: &AtomicBool, mut report: impl FnMut(&Report)) {
         let mut next_report = self.clock.now();
         while !end.load(Ordering::Relaxed) {
             let now = self.clock.now();
+            while next_report <= now {
+                self.robot.step(next_report);
+                self.judge(next_report);
+                report(&self.report(next_report));
+                next_report = next_report.plus(REPORT_EVERY);
+            }
             self.exchange(now);
             self.look(now);
-            if now >= next_report {
-                next_report = now.plus(haltline::time::Duration::from_ms(10));
-                self.judge(now);
-                report(&self.report(now));
-            }
             std::thread::sleep(Wall::from_millis(1));
         }
     }
@@ -191,11 +193,14 @@ impl Process {
         let host = match &mut self.wire {
             Wire::Terminal(link) => Some(link),
             Wire::Server(server, host) => {
-                if let Ok((stream, _)) = server.accept() {
+                if let Ok((stream, _)) = server.accept()
+                    && host.is_none()
+                {
                     *host = accepted(stream)
                         .ok()
                         .map(|link| Box::new(link) as Box<dyn Link>);
                     self.unsent.clear();
+                    self.robot.reopened();
                 }
                 host.as_mut()
             }
@@ -220,7 +225,9 @@ impl Process {
     }
 
     fn look(&mut self, now: Instant) {
-        if let Ok((stream, _)) = self.scan_server.accept() {
+        if let Ok((stream, _)) = self.scan_server.accept()
+            && self.scan_host.is_none()
+        {
             let link = accepted(stream).ok();
             self.scan_host = link.map(|link| Box::new(link) as Box<dyn Link>);
             self.scanner.disconnected();
@@ -260,12 +267,12 @@ impl Process {
     }
 
     fn report(&self, now: Instant) -> Report {
-        let (heard, heard_twist) = self.robot.last_heard();
+        let (heard, heard_at) = self.robot.last_heard();
         Report {
             time_s: now.as_us() as f64 * 1e-6,
             truth: self.robot.truth(),
             unheard_s: now.since(heard).unwrap_or_default().as_us() as f64 * 1e-6,
-            heard_twist,
+            heard_at,
             clearance_m: self.clearance_m,
             contact: self.contact,
         }

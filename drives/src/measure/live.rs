@@ -1,5 +1,6 @@
 //! A robot on a link, driven without a guard for as long as it is measured.
 
+use std::io::{self, Write};
 use std::time::Duration as Wall;
 
 use haltline::convert;
@@ -23,6 +24,7 @@ pub struct Live {
     period: Duration,
     steered: bool,
     unsent: Vec<u8>,
+    log: Option<Box<dyn Write>>,
 }
 
 impl Live {
@@ -42,7 +44,35 @@ impl Live {
             period,
             steered,
             unsent: Vec::new(),
+            log: None,
         }
+    }
+
+    /// Writes what is told and fed back to `out`, a line for each feedback (CSV).
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn log_to(&mut self, mut out: Box<dyn Write>) -> io::Result<()> {
+        writeln!(
+            out,
+            "# t_s,told_mps,told_turn,x_m,y_m,theta_rad,v_mps,w_radps  (told: - where nothing is said)"
+        )?;
+        self.log = Some(out);
+        Ok(())
+    }
+
+    fn note(&mut self, sample: &Sample, told: Option<[f64; 2]>) -> io::Result<()> {
+        let Some(out) = &mut self.log else {
+            return Ok(());
+        };
+        let told = told.map_or("-,-".to_owned(), |[v, turn]| format!("{v:.4},{turn:.4}"));
+        let [x, y, theta] = sample.pose;
+        let [v, w] = sample.twist;
+        let at_s = sample.at_s;
+        writeln!(
+            out,
+            "{at_s:.4},{told},{x:.4},{y:.4},{theta:.5},{v:.4},{w:.5}"
+        )
     }
 
     fn decision(&self, linear: f64, turn: f64, now: Instant) -> Option<Decision> {
@@ -78,11 +108,14 @@ impl Live {
                 .map_err(|error| error.to_string())?;
             self.drive.receive(&heard, now);
             if let Some(feedback) = self.drive.feedback() {
-                samples.push(Sample {
+                let sample = Sample {
                     at_s: seconds(feedback.stamp),
                     pose: feedback.pose,
                     twist: feedback.twist,
-                });
+                };
+                self.note(&sample, speak)
+                    .map_err(|error| format!("the log: {error}"))?;
+                samples.push(sample);
             }
             if let Some([linear, turn]) = speak {
                 if now >= due {

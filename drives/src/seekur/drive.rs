@@ -132,6 +132,7 @@ impl Drive for Adapter {
             },
             Link::Shaking(_) => {
                 self.outbox.clear();
+                self.outbox.stop();
                 Link::Closed
             }
             closing => closing,

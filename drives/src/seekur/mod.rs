@@ -52,6 +52,8 @@ pub struct Adapter {
     /// The operator wants the motors on, and when they were last asked to come on.
     wanted: Option<Instant>,
     motors: bool,
+    /// E_STALL was set in the SIP before.
+    e_stall: bool,
     /// Something touches a bumper or blocks a wheel.
     touching: bool,
     /// The feedback is interrupted.
@@ -71,22 +73,20 @@ impl Adapter {
     /// An adapter that starts to shake hands at its first tick.
     #[must_use]
     pub fn new(config: Config, now: Instant) -> Self {
-        let mut outbox = Outbox::default();
-        // Whoever spoke to the robot before may have left a set point behind.
-        outbox.clear();
         Self {
             config,
             governor: Governor::new(config.braking, false),
             deframer: Deframer::default(),
-            outbox,
+            outbox: Outbox::default(),
             link: Link::Shaking(Handshake::new(now)),
-            odometry: WheelOdometry::new(config.skid),
+            odometry: WheelOdometry::new(&config),
             feedback: None,
             fault: None,
             told: None,
             heard: now,
             wanted: None,
             motors: false,
+            e_stall: false,
             touching: false,
             silent: false,
             clock_us: None,
@@ -115,6 +115,7 @@ impl Adapter {
         self.outbox.set(words);
     }
 
+    /// Everything from the start; what is sent before that is up to the caller.
     fn restart(&mut self, now: Instant) {
         self.outbox.clear();
         let _ = self.governor.interrupt(now);
@@ -126,23 +127,35 @@ impl Adapter {
     }
 
     fn packet(&mut self, packet: &Packet, now: Instant) {
-        let Some(message) = server::decode(packet) else {
-            return self.report(Frame::ArcosServer(packet.id()), Fault::Unreadable);
-        };
+        let frame = Frame::ArcosServer(packet.id());
         if let Link::Shaking(handshake) = &mut self.link {
-            match handshake.message(&message, packet, now, &mut self.outbox) {
+            match handshake.message(packet, now, &mut self.outbox) {
                 Ok(Step::Going) => return,
                 Ok(Step::Open) => self.opened(now),
-                Err(fault) => return self.report(Frame::ArcosServer(packet.id()), fault),
+                Err(fault) => return self.report(frame, fault),
             }
         }
-        match message {
-            Message::Sip(sip) => self.sip(&sip, now),
-            Message::Config(config) => self.told = Some(config),
-            Message::Sync(_) | Message::RestartSync => {
-                self.report(Frame::ArcosServer(packet.id()), Fault::Unexpected);
+        match server::decode(packet) {
+            None => self.report(frame, Fault::Unreadable),
+            Some(Message::Sip(sip)) => self.sip(&sip, now),
+            Some(Message::Config(config)) => self.configured(config, now),
+            Some(Message::Sync(_)) => self.report(frame, Fault::Unexpected),
+            // A server that wants to be synchronised is not open any more, and obeys nothing.
+            Some(Message::RestartSync) if matches!(self.link, Link::Open) => {
+                self.restart(now);
+                self.report(frame, Fault::Reboot);
             }
-            _ => {}
+            Some(_) => {}
+        }
+    }
+
+    /// The robot tells its configuration, possibly another one than before.
+    fn configured(&mut self, config: config::Config, now: Instant) {
+        self.told = Some(config);
+        if let (Some(_), Err(error)) = (self.wanted, self.watchdog_fits()) {
+            self.wanted = None;
+            self.interrupt(now);
+            self.fault = Some(error);
         }
     }
 
@@ -158,17 +171,20 @@ impl Adapter {
 
     fn sip(&mut self, sip: &Sip, now: Instant) {
         self.heard = now;
+        let frame = Frame::ArcosServer(if sip.moving { 0x33 } else { 0x32 });
         if self.restarted(sip) {
-            self.report(
-                Frame::ArcosServer(crate::arcos::sip::STOPPED),
-                Fault::Reboot,
-            );
-            return self.restart(now);
+            self.restart(now);
+            self.outbox.stop();
+            return self.report(frame, Fault::Reboot);
         }
         let stamp = now.minus(self.config.transport);
         match self.odometry.take(sip, stamp) {
             Some(feedback) => self.feedback = Some(feedback),
-            None => self.report(Frame::ArcosServer(0x32), Fault::Impossible),
+            None => {
+                // Where it is now nobody knows: the caller hears of no motion, and none is sent.
+                self.interrupt(now);
+                self.report(frame, Fault::Impossible);
+            }
         }
         self.silent = false;
         self.flags(sip, now);
@@ -187,7 +203,11 @@ impl Adapter {
         let frame = Frame::ArcosServer(if sip.moving { 0x33 } else { 0x32 });
         let before = self.motors;
         self.motors = sip.flags.has(Flags::MOTORS);
-        let button = sip.flags.has(Flags::STOP_BUTTON) || sip.flags.has(Flags::E_STALL);
+        // The stall that the button leaves behind ends only when the motors are enabled again, so it
+        // is news only once.
+        let stalled = sip.flags.has(Flags::E_STALL);
+        let newly = stalled && !core::mem::replace(&mut self.e_stall, stalled);
+        let button = sip.flags.has(Flags::STOP_BUTTON) || newly;
         if (before && !self.motors) || (button && self.wanted.is_some()) {
             //= spec/drive.md#drive-15
             //# An adapter MUST stop and wait for the operator when the drive reports a pressed stop button or that its motors went off.
@@ -227,6 +247,9 @@ impl Adapter {
     }
 
     /// The dead-man time the robot tells is no longer than the robot file's.
+    //= spec/drive.md#drive-14
+    //# When the controlling process is killed, the robot MUST rest no later than its dead-man time plus `v /
+    //# b_silent` after it last heard a set point.
     fn watchdog_fits(&self) -> Result<(), DriveError> {
         let found = self.told.and_then(|told| told.watchdog_ms);
         let wanted_ms = self.config.watchdog_max_ms;
@@ -255,8 +278,10 @@ impl Adapter {
     fn watch(&mut self, now: Instant) {
         let quiet = now.since(self.heard).unwrap_or_default();
         if quiet > LOST {
-            self.report(Frame::Stream, Fault::Silent);
-            return self.restart(now);
+            self.restart(now);
+            // It was open, and may be.
+            self.outbox.stop();
+            return self.report(Frame::Stream, Fault::Silent);
         }
         if quiet > self.config.feedback_max && !self.silent {
             self.silent = true;

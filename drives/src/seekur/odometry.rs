@@ -1,19 +1,24 @@
 //! Pose and twist from SIPs, with the skid taken out.
 
-use haltline::time::Instant;
+use haltline::time::{Duration, Instant};
 
-use super::wire::DIFF_CONV;
+use super::wire::{DIFF_CONV, Seekur};
 use crate::arcos::Sip;
 use crate::arcos::sip::{RADIANS_PER_COUNT, Unwrap};
 use crate::drive::Feedback;
 
-/// A robot that turns farther than this between two SIPs was not measured.
-const TURN_MAX_RAD: f64 = 1.0;
+/// A robot that drives or turns this many times faster than it can was not measured.
+const TOO_FAST: f64 = 1.5;
+/// Two SIPs may arrive together although they were sent one cycle (at most 255 ms) apart.
+const JOINED_S: f64 = 0.3;
 
 /// Integrates what the robot reports along a heading that is corrected for skid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WheelOdometry {
     skid: f64,
+    speed_max_mps: f64,
+    turn_max_radps: f64,
+    stamp: Option<Instant>,
     x: Unwrap,
     y: Unwrap,
     heading: Option<i16>,
@@ -22,9 +27,12 @@ pub(super) struct WheelOdometry {
 }
 
 impl WheelOdometry {
-    pub(super) fn new(skid: f64) -> Self {
+    pub(super) fn new(config: &Seekur) -> Self {
         Self {
-            skid: skid.clamp(0.05, 1.0),
+            skid: config.skid.clamp(0.05, 1.0),
+            speed_max_mps: f64::from(config.speed_max_mmps) * 1e-3,
+            turn_max_radps: f64::from(config.turn_max_degps).to_radians(),
+            stamp: None,
             x: Unwrap::default(),
             y: Unwrap::default(),
             heading: None,
@@ -36,6 +44,7 @@ impl WheelOdometry {
     /// The robot's counters start again; the pose goes on from where it was.
     pub(super) fn restart(&mut self) {
         (self.x, self.y, self.heading) = (Unwrap::default(), Unwrap::default(), None);
+        self.stamp = None;
         self.twist = [0.0; 2];
     }
 
@@ -52,7 +61,8 @@ impl WheelOdometry {
         let turned = sip.heading.wrapping_sub(before).rem_euclid(4096);
         let turned = if turned > 2048 { turned - 4096 } else { turned };
         let turned = f64::from(turned) * RADIANS_PER_COUNT;
-        if turned.abs() > TURN_MAX_RAD {
+        let gap = self.stamp.replace(stamp).and_then(|last| stamp.since(last));
+        if !self.is_possible(sip, step, turned, gap.unwrap_or_default()) {
             return None;
         }
         let middle = f64::from(before) * RADIANS_PER_COUNT + turned / 2.0;
@@ -76,6 +86,17 @@ impl WheelOdometry {
             }),
             bumpers: [sip.bumpers.front(), sip.bumpers.rear()],
         })
+    }
+
+    /// Whether this robot can have moved by `step` (m) and `turned` (rad) in `gap`, and move as it says.
+    fn is_possible(&self, sip: &Sip, step: [f64; 2], turned: f64, gap: Duration) -> bool {
+        let span_s = gap.as_us() as f64 * 1e-6 + JOINED_S;
+        let path_m = libm::hypot(step[0], step[1]);
+        let [v, w] = self.measured(sip);
+        path_m <= TOO_FAST * self.speed_max_mps * span_s
+            && turned.abs() <= TOO_FAST * self.turn_max_radps * span_s
+            && v.abs() <= TOO_FAST * self.speed_max_mps
+            && (w / self.skid).abs() <= TOO_FAST * self.turn_max_radps
     }
 
     fn measured(&self, sip: &Sip) -> [f64; 2] {

@@ -26,11 +26,9 @@ pub(super) struct Outbox {
 }
 
 impl Outbox {
-    /// Forgets what waits, and has the robot stand: the next packet, whichever it is, might revive
-    /// an old set point. (SYNC0 is PULSE to a server that is still open.)
+    /// Forgets what waits.
     pub(super) fn clear(&mut self) {
         *self = Self {
-            stop: true,
             // A packet that is half on the wire is finished, or it would spoil the next.
             partial: self.partial,
             sent: self.sent,

@@ -129,15 +129,18 @@ pub enum Command {
 
 impl Command {
     /// The command with its newline.
+    ///
+    /// Two spaces stand between a number and its check: if one were lost or spoiled, a single space
+    /// would leave one number, wrong and unchecked.
     #[must_use]
     pub fn encode(self) -> Line {
         let mut line = Line::default();
         let written = match self {
             Self::Drive(level) => {
                 let (mode, value) = level.words();
-                writeln!(line, "!DRV {mode} {value} {value}")
+                writeln!(line, "!DRV {mode} {value}  {value}")
             }
-            Self::Steer(SteeringLevel(level)) => writeln!(line, "!STEER {level} {level}"),
+            Self::Steer(SteeringLevel(level)) => writeln!(line, "!STEER {level}  {level}"),
             Self::SetDeadMan(ms) => writeln!(line, "!DRV ~DMS={ms}"),
             Self::GetDeadMan => writeln!(line, "?DRV ~DMS"),
             Self::GetSession => writeln!(line, "?SID"),

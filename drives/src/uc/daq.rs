@@ -22,7 +22,7 @@ impl Type {
     /// Type of a named channel of the board; `None` for a name it does not have.
     #[must_use]
     pub fn of_channel(name: &str) -> Option<Self> {
-        const NAMES: [(&str, Type); 25] = [
+        const NAMES: [(&str, Type); 30] = [
             ("AX", Type::I16),
             ("AY", Type::I16),
             ("AZ", Type::I16),
@@ -46,7 +46,12 @@ impl Type {
             ("_TICS", Type::U32),
             ("_TICS16", Type::U16),
             ("_TICS8", Type::U8),
+            ("_DTICS", Type::U32),
             ("_DTICS16", Type::U16),
+            ("_DTICS8", Type::U8),
+            ("PBA", Type::U8),
+            ("PBB", Type::U8),
+            ("PBC", Type::U8),
             ("_DLY", Type::U8),
         ];
         NAMES
@@ -62,6 +67,14 @@ impl Type {
             Self::U16 => 0xFFFF,
             Self::I16 => 0x7FFF,
             Self::U32 => 0xFFFF_FFFF,
+        }
+    }
+
+    /// Lowest value of the type.
+    const fn lowest(self) -> i64 {
+        match self {
+            Self::I16 => -0x8000,
+            Self::U8 | Self::U16 | Self::U32 => 0,
         }
     }
 
@@ -129,11 +142,13 @@ pub enum DaqError {
     Crc,
 }
 
-/// Group number and payload of a data message (its text after the `#`).
+/// Group number and payload of a data message (its text after the `#`; firmware before 0.12.0 put a
+/// second one before binary data).
 ///
 /// # Errors
 /// The number is missing or above 19.
 pub fn split(text: &str) -> Result<(u8, &str), DaqError> {
+    let text = text.strip_prefix('#').unwrap_or(text);
     let (number, payload) = text.split_once(':').ok_or(DaqError::Group)?;
     let number: u8 = number.trim().parse().map_err(|_| DaqError::Group)?;
     if number > 19 {
@@ -184,8 +199,11 @@ impl Group<'_> {
             *slot = if field.starts_with('[') && field.ends_with(']') {
                 None
             } else {
-                let raw: i64 = field.parse().map_err(|_| DaqError::Encoding)?;
-                kind.value(raw)
+                let digits = field.strip_prefix('-').unwrap_or(field);
+                let plain = digits.bytes().all(|byte| byte.is_ascii_digit());
+                let raw = plain.then(|| field.parse().ok()).flatten();
+                let fits = |raw: &i64| (kind.lowest()..=kind.highest()).contains(raw);
+                kind.value(raw.filter(fits).ok_or(DaqError::Encoding)?)
             };
         }
         match fields.next() {

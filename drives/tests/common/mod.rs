@@ -10,12 +10,34 @@
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, channel};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use haltline_drives::emulator::process::Report;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_haltline-drives");
+
+/// How many times slower than the world emulators and drivers live: the machine may be busy with other
+/// things, and calls a loop of 20 ms late then. What is judged is judged in their time.
+static SLOWNESS: AtomicU32 = AtomicU32::new(1);
+
+/// The option that both ends get.
+pub fn pace() -> [String; 2] {
+    [
+        "--slow".to_owned(),
+        SLOWNESS.load(Ordering::Relaxed).to_string(),
+    ]
+}
+
+/// The machine did not keep the rhythm: from now on everything goes at half the speed. `false` if it
+/// would be slower than an eighth.
+pub fn slow_down() -> bool {
+    let slower = |slowness| (slowness < 8).then_some(slowness * 2);
+    SLOWNESS
+        .fetch_update(Ordering::Relaxed, Ordering::Relaxed, slower)
+        .is_ok()
+}
 
 /// A robot file of the project with some keys changed, written where tests may write.
 pub fn robot_file(name: &str, tag: &str, changes: &[(&str, &str)]) -> PathBuf {
@@ -61,6 +83,7 @@ impl Emulator {
         let mut child = Command::new(PROGRAM)
             .args(["emulate", robot, "--port", port])
             .args(options)
+            .args(pace())
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
@@ -87,20 +110,21 @@ impl Emulator {
         }
     }
 
-    /// The next report; panics if the emulator is silent for 10 s.
+    /// The next report; panics if the emulator is silent for a minute.
     pub fn report(&mut self) -> Report {
         let report = self
             .reports
-            .recv_timeout(Duration::from_secs(10))
+            .recv_timeout(Duration::from_secs(60))
             .expect("a report");
         self.newest = Some(report);
         report
     }
 
-    /// Reads reports until one fits; `None` after `most`.
+    /// Reads reports until one fits; `None` after `most` of the robot's time.
     pub fn until(&mut self, most: Duration, fits: impl Fn(&Report) -> bool) -> Option<Report> {
-        let start = Instant::now();
-        while start.elapsed() < most {
+        let start_s = self.newest.map_or(0.0, |report| report.time_s);
+        let end_s = start_s + most.as_secs_f64();
+        while self.newest.is_none_or(|newest| newest.time_s < end_s) {
             let report = self.report();
             if fits(&report) {
                 return Some(report);
@@ -142,6 +166,7 @@ impl Driver {
                 &emulator.scan,
             ])
             .args(options)
+            .args(pace())
             .stdout(log.try_clone().unwrap())
             .stderr(log)
             .spawn()

@@ -1,15 +1,15 @@
 //! A Seekur Jr: ARCOS server, motor ramps, skid, watchdog.
 
 mod say;
+mod wire;
 
 use haltline::time::{Duration, Instant};
 
 use super::Robot;
 use super::motion::{Truth, ramp, steps};
-use crate::arcos::command::{number, vel2_sides};
-use crate::arcos::config::text;
-use crate::arcos::server::Identity;
-use crate::arcos::{Argument, Command, Deframer, Packet, VEL2_DIVISOR};
+use crate::arcos::command::number;
+pub(crate) use wire::Ear;
+use wire::{Data, Heard};
 
 /// What this robot is like.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,12 +22,28 @@ pub struct SeekurModel {
     pub sip_cycle_ms: u8,
     /// Whether it answers CONFIG.
     pub tells_config: bool,
+    /// Whether its SIPs end with its clock.
+    pub tells_time: bool,
+    /// What it makes of a packet that is not the next of the handshake.
+    pub out_of_order: OutOfOrder,
     /// True turn rate for each turn rate of the wheels.
     pub skid: f64,
-    /// Deceleration of its own stops until somebody sets another, m/s² and rad/s².
+    /// Deceleration of the watchdog's stop, and of all others until somebody sets another, m/s² and
+    /// rad/s². (No source says that SETA changes the watchdog's.)
     pub braking: [f64; 2],
     /// Pose at the start.
     pub start: [f64; 3],
+}
+
+/// Servers differ in what they make of a packet that is not the next of the handshake.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutOfOrder {
+    /// They want the count restarted (packet 255).
+    Restart,
+    /// They are silent.
+    Ignore,
+    /// They take its number for the count and lose their way until the link is opened again.
+    Adopt,
 }
 
 impl Default for SeekurModel {
@@ -37,6 +53,8 @@ impl Default for SeekurModel {
             ignores_watchdog: false,
             sip_cycle_ms: 100,
             tells_config: true,
+            tells_time: true,
+            out_of_order: OutOfOrder::Restart,
             skid: 1.0,
             braking: [0.5, 1.0],
             start: [0.0; 3],
@@ -53,15 +71,19 @@ const MOTORS_OFF: [f64; 2] = [0.4, 0.8];
 #[derive(Clone, Debug)]
 pub struct Seekur {
     model: SeekurModel,
-    deframer: Deframer,
+    ear: Ear,
     out: Vec<u8>,
     server: Server,
+    booted: Instant,
     lived: Instant,
     heard: Instant,
-    heard_twist: [f64; 2],
+    heard_at: Truth,
     next_sip: Instant,
     motors: bool,
     bumper: bool,
+    /// The STOP button is pressed, and it has switched the motors off.
+    button: bool,
+    stalled: bool,
     /// Set points: m/s and rad/s of the wheels. They outlive the watchdog's stop.
     set: [f64; 2],
     emergency: bool,
@@ -85,6 +107,8 @@ enum Server {
     Synchronised,
     /// Sends SIPs.
     Open,
+    /// Waits for something that never comes.
+    Lost,
 }
 
 impl Seekur {
@@ -93,15 +117,18 @@ impl Seekur {
     pub fn new(model: SeekurModel, now: Instant) -> Self {
         Self {
             model,
-            deframer: Deframer::default(),
+            ear: Ear::default(),
             out: Vec::new(),
             server: Server::Waiting(0),
+            booted: now,
             lived: now,
             heard: now,
-            heard_twist: [0.0; 2],
+            heard_at: Truth::default(),
             next_sip: now,
             motors: false,
             bumper: false,
+            button: false,
+            stalled: false,
             set: [0.0; 2],
             emergency: false,
             speed_max: 1.2,
@@ -117,63 +144,50 @@ impl Seekur {
         }
     }
 
-    /// Someone presses the STOP button: the motors go off.
-    pub fn press_stop(&mut self) {
-        self.motors = false;
+    fn say(&mut self, packet: &[u8]) {
+        self.out.extend_from_slice(packet);
     }
 
-    fn say(&mut self, packet: Option<Packet>) {
-        if let Some(packet) = packet {
-            self.out.extend_from_slice(packet.to_bytes().as_slice());
-        }
-    }
-
-    fn packet(&mut self, packet: &Packet, now: Instant) {
-        let Some(command) = Command::decode(packet) else {
-            return; // an argument that cannot be read is ignored, the packet counts for nothing
-        };
+    /// Whatever it is, it is a client's packet: the watchdog starts anew.
+    fn packet(&mut self, command: Heard, now: Instant) {
         self.heard = now;
-        self.heard_twist = self.truth.twist;
+        self.heard_at = self.truth;
         match self.server {
-            Server::Waiting(step) => self.synchronise(step, command.number, now),
+            Server::Waiting(step) if command.number == step => self.synchronised(step),
+            Server::Waiting(_) => self.confused(),
+            Server::Lost => {}
             Server::Synchronised if command.number == number::OPEN => {
                 self.server = Server::Open;
                 self.next_sip = now;
             }
-            Server::Synchronised if command.number == number::SYNC0 => {
-                self.synchronise(0, number::SYNC0, now);
-            }
+            Server::Synchronised if command.number == number::SYNC0 => self.synchronised(0),
             Server::Synchronised => {}
-            Server::Open => self.obey(&command),
+            Server::Open => self.obey(command),
         }
     }
 
-    fn synchronise(&mut self, step: u8, number: u8, _now: Instant) {
-        if number > 2 {
-            return; // no part of a handshake
+    fn confused(&mut self) {
+        match self.model.out_of_order {
+            OutOfOrder::Restart => {
+                self.server = Server::Waiting(0);
+                self.say(&Data::default().packet(255));
+            }
+            OutOfOrder::Ignore => {}
+            OutOfOrder::Adopt => self.server = Server::Lost,
         }
-        if number != step {
-            self.server = Server::Waiting(0);
-            return self.say(Packet::new(255, &[]));
-        }
+    }
+
+    fn synchronised(&mut self, step: u8) {
         if step < 2 {
             self.server = Server::Waiting(step + 1);
-            return self.say(Packet::new(step, &[]));
+            return self.say(&Data::default().packet(step));
         }
         self.server = Server::Synchronised;
-        let identity = Identity {
-            name: text(b"Haltline"),
-            class: text(b"Pioneer"),
-            subclass: text(b"seekurjr"),
-        };
-        self.say(identity.encode());
+        self.say(&self.identity());
     }
 
-    fn obey(&mut self, command: &Command<'_>) {
-        let value = match command.argument {
-            Argument::Int(value) => value,
-            _ => 0,
-        };
+    fn obey(&mut self, command: Heard) {
+        let value = command.value.unwrap_or_default();
         let metres = f64::from(value) * 1e-3;
         let radians = f64::from(value).to_radians();
         match command.number {
@@ -182,7 +196,8 @@ impl Seekur {
                 (self.motors, self.set) = (false, [0.0; 2]);
             }
             number::ENABLE => {
-                self.motors = value != 0;
+                self.motors = value != 0 && !self.button;
+                self.stalled &= !self.motors;
                 self.emergency = false;
             }
             number::SETA if value < 0 => self.deceleration[0] = -metres,
@@ -191,24 +206,29 @@ impl Seekur {
             number::SETRA => self.acceleration[1] = radians,
             number::SETV => self.speed_max = metres.abs().min(1.2),
             number::SETRV => self.turn_max = radians.abs().min(80_f64.to_radians()),
+            number::SETO => self.counted = [0.0; 3],
             number::VEL => self.tell(Some(metres), None),
             number::RVEL | number::ROTATE => self.tell(None, Some(radians)),
-            number::VEL2 => {
-                if let Some((left, right)) = vel2_sides(value) {
-                    let side = |count: i8| f64::from(count) * f64::from(VEL2_DIVISOR) * 1e-3;
-                    let (left, right) = (side(left), side(right));
-                    let turn = (right - left) / 2.0 * 1e3 * 0.0056;
-                    self.tell(Some(f64::midpoint(left, right)), Some(turn));
-                }
-            }
+            number::VEL2 => self.sides(value),
             number::STOP => self.set = [0.0; 2],
             number::E_STOP | number::QSTOP => {
                 self.set = [0.0; 2];
                 self.emergency = true;
             }
-            number::CONFIG if self.model.tells_config => self.say(self.config().encode()),
+            number::CONFIG if self.model.tells_config => self.say(&self.config()),
             _ => {}
         }
+    }
+
+    /// VEL2: right in the low byte, left in the high one, counts of 20 mm/s.
+    fn sides(&mut self, value: i32) {
+        let signed = |byte: i32| f64::from(if byte > 127 { byte - 256 } else { byte });
+        let right = signed(value.rem_euclid(256)) * 0.020;
+        let left = signed(value.div_euclid(256).rem_euclid(256)) * 0.020;
+        self.tell(
+            Some(f64::midpoint(left, right)),
+            Some((right - left) / 2.0 * 5.6),
+        );
     }
 
     fn tell(&mut self, speed: Option<f64>, turn: Option<f64>) {
@@ -229,14 +249,17 @@ impl Seekur {
     }
 
     fn live(&mut self, now: Instant, dt_s: f64) {
-        let stopped = !self.motors || self.is_left_alone(now) || self.emergency;
+        let alone = self.is_left_alone(now);
+        let stopped = !self.motors || alone || self.emergency;
         let target = if stopped { [0.0; 2] } else { self.set };
         let down = if self.emergency {
             EMERGENCY
-        } else if self.motors {
-            self.deceleration
-        } else {
+        } else if !self.motors {
             MOTORS_OFF
+        } else if alone {
+            self.model.braking
+        } else {
+            self.deceleration
         };
         for axis in 0..2 {
             let up = self.acceleration[axis];
@@ -252,7 +275,7 @@ impl Seekur {
         self.truth.advance(ground, dt_s);
         if self.server == Server::Open && now >= self.next_sip {
             self.next_sip = now.plus(Duration::from_ms(u64::from(self.model.sip_cycle_ms)));
-            self.say(self.sip(now).encode());
+            self.say(&self.sip(now));
         }
     }
 }
@@ -260,10 +283,8 @@ impl Seekur {
 impl Robot for Seekur {
     fn receive(&mut self, bytes: &[u8], now: Instant) {
         self.step(now);
-        for byte in bytes {
-            if let Some(Ok(packet)) = self.deframer.push(*byte, now) {
-                self.packet(&packet, now);
-            }
+        for command in self.ear.hear(bytes) {
+            self.packet(command, now);
         }
     }
 
@@ -288,15 +309,31 @@ impl Robot for Seekur {
         *self = Self {
             truth: self.truth,
             wheels: self.wheels,
+            button: self.button,
             ..fresh
         };
     }
 
-    fn last_heard(&self) -> (Instant, [f64; 2]) {
-        (self.heard, self.heard_twist)
+    fn last_heard(&self) -> (Instant, Truth) {
+        (self.heard, self.heard_at)
     }
 
     fn bump(&mut self, touching: bool) {
         self.bumper = touching;
+    }
+
+    fn press_stop(&mut self, pressed: bool) {
+        self.button = pressed;
+        if pressed {
+            // The motors stay off until somebody enables them again.
+            (self.motors, self.stalled) = (false, true);
+        }
+    }
+
+    fn reopened(&mut self) {
+        if self.model.out_of_order == OutOfOrder::Adopt {
+            // The session ended with its connection.
+            (self.server, self.motors, self.set) = (Server::Waiting(0), false, [0.0; 2]);
+        }
     }
 }

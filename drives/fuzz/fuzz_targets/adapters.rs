@@ -1,9 +1,0 @@
-//! Anybody's bytes against `attack::adapters`.
-#![no_main]
-
-use haltline_drives::conformance::attack;
-use libfuzzer_sys::fuzz_target;
-
-fuzz_target!(|bytes: &[u8]| {
-    assert_eq!(attack::adapters(bytes), Ok(()));
-});
