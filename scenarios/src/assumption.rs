@@ -4,7 +4,7 @@
 use haltline_robots::{Encoding, Robot};
 
 use crate::drive::DriveModel;
-use crate::file::fault::FaultKind;
+use crate::file::fault::{FaultEntry, FaultKind};
 use crate::file::{Scenario, Silence};
 use crate::math::seconds;
 use crate::result::BrokenAssumption;
@@ -65,6 +65,7 @@ pub fn broken(
 ) -> Vec<Broken> {
     let drive = DriveModel::new(robot, scenario);
     let mut found = drive_breaks(robot, &drive);
+    found.extend(skid_break(robot, scenario));
     found.extend(odometry_breaks(robot, &drive, odometry_error));
     found.extend(sensor_breaks(robot, scenario));
     found.extend(body_breaks(robot, scenario, world));
@@ -106,6 +107,18 @@ fn drive_breaks(robot: &Robot, drive: &DriveModel) -> Vec<Broken> {
         ));
     }
     found
+}
+
+fn skid_break(robot: &Robot, scenario: &Scenario) -> Option<Broken> {
+    let skid = scenario.drive.skid?;
+    let slid_m = libm::hypot(skid.ahead_m.get(), skid.left_m.get());
+    let allowed_m = robot.values.tolerances.tracking_m;
+    (slid_m > allowed_m + EPSILON).then(|| Broken {
+        id: "A-TRACKING",
+        what: format!("the robot skids by {slid_m:.3} m, {allowed_m} m are assumed"),
+        body: None,
+        from_s: skid.from_s.get(),
+    })
 }
 
 fn odometry_breaks(robot: &Robot, drive: &DriveModel, [linear, angular]: [f64; 2]) -> Vec<Broken> {
@@ -182,9 +195,9 @@ fn body_breaks(robot: &Robot, scenario: &Scenario, world: &World) -> Vec<Broken>
 }
 
 fn fault_breaks(robot: &Robot, scenario: &Scenario, drive: &DriveModel) -> Vec<Broken> {
-    let describe = |entry: &toml::Spanned<crate::file::fault::FaultEntry>| {
+    let describe = |entry: &toml::Spanned<FaultEntry>| {
         let fault = entry.get_ref();
-        let (id, what) = fault_break(robot, scenario, drive, fault.kind)?;
+        let (id, what) = fault_break(robot, scenario, drive, fault)?;
         Some(Broken {
             id,
             what,
@@ -199,12 +212,26 @@ fn fault_break(
     robot: &Robot,
     scenario: &Scenario,
     drive: &DriveModel,
-    kind: FaultKind,
+    fault: &FaultEntry,
 ) -> Option<(&'static str, String)> {
     let clears = robot.values.scanners.iter().any(|scanner| {
         scanner.no_return_clear_m > 0.0 && scanner.encoding != Encoding::ZeroIsInvalid
     });
-    let (id, what) = match kind {
+    let factor = fault.factor.map_or(1.0, |factor| factor.get());
+    let (id, what) = match fault.kind {
+        FaultKind::RangesQuantised => return quantised_break(robot, scenario, fault),
+        FaultKind::RangesSaturated => ("A-SENSOR", "ranges read less than they should"),
+        FaultKind::RangesScaled if (factor - 1.0).abs() > EPSILON => {
+            ("A-SENSOR", "ranges are scaled")
+        }
+        FaultKind::SectorSpoofed => ("A-SENSOR", "beams come back from where nothing is"),
+        FaultKind::ScanMirrored => ("A-SENSOR", "scans are mirrored"),
+        FaultKind::ScanRotated => ("A-SENSOR", "the scanner is turned on its mount"),
+        FaultKind::OdometryScaled => return scaled_break(robot, factor),
+        FaultKind::DriveStuck => ("A-LATENCY", "the drive keeps an old set point"),
+        FaultKind::DriveIgnoresStop => {
+            ("A-BRAKE", "the drive ignores set points that slow it down")
+        }
         FaultKind::OdometryJump => ("A-ODOMETRY", "the odometry pose jumps"),
         FaultKind::OdometrySign => ("A-ODOMETRY", "odometry has the wrong sign"),
         FaultKind::OdometryFrozen => ("A-ODOMETRY", "odometry is frozen"),
@@ -213,9 +240,12 @@ fn fault_break(
             ("A-NORETURN", "beams that met a body come back from nowhere")
         }
         FaultKind::ScanFuture
+        | FaultKind::ScanPast
+        | FaultKind::ScanJitter
         | FaultKind::ScanWrapped
         | FaultKind::OdometryFuture
         | FaultKind::CommandFuture
+        | FaultKind::ClockForwards
         | FaultKind::ClockBackwards => ("A-CLOCK", "stamps and clock do not agree"),
         FaultKind::HostDeath => return host_death_break(robot, drive),
         FaultKind::HostPause if scenario.drive.honours_expiry == Some(false) => (
@@ -225,6 +255,37 @@ fn fault_break(
         _ => return None,
     };
     Some((id, what.to_owned()))
+}
+
+/// Rounding to steps errs by half a step, on top of all other errors.
+fn quantised_break(
+    robot: &Robot,
+    scenario: &Scenario,
+    fault: &FaultEntry,
+) -> Option<(&'static str, String)> {
+    let half_m = fault.range_m?.get() / 2.0;
+    let worst = |scanner: &haltline_robots::Scanner| {
+        let model = ScannerModel::new(scanner, scenario);
+        let error_m = model.bias_m.abs() + 3.0 * model.sigma_m + half_m;
+        let allowed_m = scanner.error_m();
+        (error_m > allowed_m + EPSILON).then(|| {
+            format!("coarse ranges err by up to {error_m:.3} m, {allowed_m:.3} m are assumed")
+        })
+    };
+    let what = robot.values.scanners.iter().find_map(worst)?;
+    Some(("A-SENSOR", what))
+}
+
+fn scaled_break(robot: &Robot, factor: f64) -> Option<(&'static str, String)> {
+    let tolerances = &robot.values.tolerances;
+    let error = (factor - 1.0).abs();
+    let allowed = [tolerances.odometry_m_per_m, tolerances.odometry_rad_per_rad];
+    let bad = allowed.iter().any(|allowed| error > allowed + EPSILON);
+    let what = format!(
+        "odometry counts {factor} times what it should, errors of {} and {} are assumed",
+        allowed[0], allowed[1]
+    );
+    bad.then_some(("A-ODOMETRY", what))
 }
 
 fn host_death_break(robot: &Robot, drive: &DriveModel) -> Option<(&'static str, String)> {

@@ -41,8 +41,8 @@ pub struct CaseRun {
 pub fn run_one(case: &Case, guard_on: bool) -> Option<Run> {
     let controller: Option<Box<dyn Controller>> = match (guard_on, case.scenario.navigates()) {
         (false, _) => None,
-        (true, false) => Some(Box::new(RobotKernel::new(case.robot.config).ok()?)),
-        (true, true) => Some(Box::new(Pilot::new(&case.scenario, &case.robot).ok()?)),
+        (true, false) => Some(Box::new(RobotKernel::new(case.told.config).ok()?)),
+        (true, true) => Some(Box::new(Pilot::new(&case.scenario, &case.told).ok()?)),
     };
     Some(run(&case.scenario, &case.robot, controller))
 }

@@ -36,6 +36,10 @@ pub trait Controller {
     /// One tick.
     fn step(&mut self, inputs: &Inputs<'_>, now: Instant) -> Decision;
 
+    /// What sensors of its own see at the robot's true pose, just before the tick at `now`: those
+    /// that the guard knows nothing of, as cameras that look for markers.
+    fn sense(&mut self, _truth: &Pose, _now: Instant) {}
+
     /// The order under which the next tick follows its own route; none: it must not.
     fn order(&mut self, _stamp: Option<Instant>) {}
 

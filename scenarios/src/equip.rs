@@ -1,7 +1,9 @@
 //! Robot and scenario meet: what the file says about the robot is applied, and what does not fit refused.
 
+use std::collections::BTreeMap;
+
 use haltline_robots::{Change, Kinematics, Robot};
-use toml::Value;
+use toml::{Spanned, Value};
 
 use crate::contact::Judge;
 use crate::controller::RobotKernel;
@@ -18,7 +20,9 @@ pub struct Case {
     pub scenario: Scenario,
     /// Its robot, with the scenario's values, obstacle speed and host death settings.
     pub robot: Robot,
-    /// Where it differs from its file.
+    /// What the kernel is told about the robot: the truth, or with the values of `[told]`.
+    pub told: Robot,
+    /// Where the robot differs from its file; keys of `[told]` begin with `told.`.
     pub changes: Vec<Change>,
 }
 
@@ -37,18 +41,8 @@ const OWN_KEYS: [(&str, &str); 2] = [
 pub fn equip(scenario: Scenario, robot: &Robot) -> Result<Case, ScenarioError> {
     let wrong = |path: &str, message: String| scenario.places.complain(path, message);
     let mut changes = changes(&scenario)?;
-    let mut equipped = changed(&scenario, robot, &mut changes)?;
-    let speed = scenario.obstacle_speed_mps.get();
-    equipped = equipped.with_obstacle_speed(speed).ok_or_else(|| {
-        let message =
-            format!("obstacle_speed_mps = {speed} does not fit the kernel; write at most 10");
-        wrong("", message)
-    })?;
-    if let Some(cover) = scenario.cover_host_death {
-        equipped = equipped
-            .with_cover_host_death(cover)
-            .ok_or_else(|| wrong("", "cover_host_death does not fit this robot".to_owned()))?;
-    }
+    let equipped = ordered(&scenario, changed(&scenario, robot, &mut changes)?)?;
+    let told = told(&scenario, robot, &equipped, &mut changes)?;
     check_steps(&scenario, &equipped)?;
     if let Some((path, body)) = overlapped(&scenario, &equipped) {
         let message = format!(
@@ -64,12 +58,69 @@ pub fn equip(scenario: Scenario, robot: &Robot) -> Result<Case, ScenarioError> {
         );
         return Err(wrong("robot_values.timing.period_s", message));
     }
-    check_kernel(&scenario, &equipped)?;
+    check_kernel(&scenario, &told)?;
     changes.retain(Change::differs);
     Ok(Case {
         scenario,
         robot: equipped,
+        told,
         changes,
+    })
+}
+
+/// Obstacle speed and host death as the scenario orders them.
+fn ordered(scenario: &Scenario, robot: Robot) -> Result<Robot, ScenarioError> {
+    let wrong = |message: String| scenario.places.complain("", message);
+    let speed = scenario.obstacle_speed_mps.get();
+    let robot = robot.with_obstacle_speed(speed).ok_or_else(|| {
+        wrong(format!(
+            "obstacle_speed_mps = {speed} does not fit the kernel; write at most 10"
+        ))
+    })?;
+    match scenario.cover_host_death {
+        None => Ok(robot),
+        Some(cover) => robot
+            .with_cover_host_death(cover)
+            .ok_or_else(|| wrong("cover_host_death does not fit this robot".to_owned())),
+    }
+}
+
+/// What the kernel is told: the truth, but for the values of `[told]`, which join the changes.
+fn told(
+    scenario: &Scenario,
+    robot: &Robot,
+    truth: &Robot,
+    changes: &mut Vec<Change>,
+) -> Result<Robot, ScenarioError> {
+    if scenario.told.is_empty() {
+        return Ok(truth.clone());
+    }
+    let lies = unfolded(&scenario.told);
+    let lied = |key: &str| lies.iter().any(|(_, lie)| lie.key == key);
+    let mut all: Vec<Change> = changes.iter().filter(|c| !lied(&c.key)).cloned().collect();
+    let first = all.len();
+    all.extend(lies.iter().map(|(_, lie)| lie.clone()));
+    let place = |index: Option<usize>| {
+        let blamed = index.and_then(|at| lies.get(at.checked_sub(first)?));
+        blamed.map_or_else(String::new, |(head, _)| format!("told.{head}"))
+    };
+    let told = robot
+        .with_changes(&mut all)
+        .map_err(|error| scenario.places.complain(&place(error.index), error.message))?;
+    changes.extend(all.into_iter().skip(first).map(|lie| Change {
+        key: format!("told.{}", lie.key),
+        ..lie
+    }));
+    let speed = told.values.obstacle_speed_mps;
+    let told = ordered(scenario, told)?;
+    if !lied("obstacles.speed_mps") {
+        return Ok(told);
+    }
+    told.with_obstacle_speed(speed).ok_or_else(|| {
+        let message = "obstacles.speed_mps does not fit the kernel; write at most 10".to_owned();
+        scenario
+            .places
+            .complain("told.obstacles.speed_mps", message)
     })
 }
 
@@ -108,10 +159,10 @@ fn refused(error: &PilotError) -> String {
     }
 }
 
-/// The table `[robot_values]` as changes; nested tables spell dotted keys.
-fn changes(scenario: &Scenario) -> Result<Vec<Change>, ScenarioError> {
+/// A table of dotted keys as changes, each with the key it stands under; nested tables spell dotted keys.
+fn unfolded(table: &BTreeMap<Spanned<String>, Value>) -> Vec<(&str, Change)> {
     let mut found = Vec::new();
-    for (key, value) in &scenario.robot_values {
+    for (key, value) in table {
         let key = key.get_ref();
         let mut open = vec![(key.clone(), value)];
         while let Some((path, value)) = open.pop() {
@@ -120,10 +171,16 @@ fn changes(scenario: &Scenario) -> Result<Vec<Change>, ScenarioError> {
                     let inner = table.iter().rev();
                     open.extend(inner.map(|(name, value)| (format!("{path}.{name}"), value)));
                 }
-                plain => found.push((key, Change::new(&path, &plain.to_string()))),
+                plain => found.push((key.as_str(), Change::new(&path, &plain.to_string()))),
             }
         }
     }
+    found
+}
+
+/// The table `[robot_values]` as changes.
+fn changes(scenario: &Scenario) -> Result<Vec<Change>, ScenarioError> {
+    let found = unfolded(&scenario.robot_values);
     for (key, change) in &found {
         if let Some((_, own)) = OWN_KEYS.iter().find(|(path, _)| *path == change.key) {
             let message = format!(

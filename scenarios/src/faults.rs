@@ -1,7 +1,12 @@
 //! What goes wrong between the sensors and the kernel, applied to raw data on their way.
 
+mod scan;
+
 use std::collections::BTreeMap;
 
+use haltline_robots::{Robot, Scanner};
+
+use crate::drive::SetPoint;
 use crate::file::Scenario;
 use crate::file::fault::{FaultEntry, FaultKind};
 use crate::math::{microseconds, seconds};
@@ -15,6 +20,7 @@ use crate::sensor::RawScan;
 pub struct Faults {
     entries: Vec<FaultEntry>,
     noise: Noise,
+    scanners: Vec<Scanner>,
     frozen: BTreeMap<usize, Vec<f32>>,
     scan_before: BTreeMap<usize, RawScan>,
     late_scans: Vec<(u64, RawScan)>,
@@ -22,12 +28,14 @@ pub struct Faults {
     odometry_past: Vec<RawOdometry>,
     commands_past: Vec<RawCommand>,
     late_commands: Vec<(u64, RawCommand)>,
+    /// What the drive took last.
+    taken: Option<SetPoint>,
 }
 
 impl Faults {
-    /// The faults of a scenario.
+    /// The faults of a scenario with its robot.
     #[must_use]
-    pub fn new(scenario: &Scenario) -> Self {
+    pub fn new(scenario: &Scenario, robot: &Robot) -> Self {
         Self {
             entries: scenario
                 .fault
@@ -35,6 +43,7 @@ impl Faults {
                 .map(|entry| entry.get_ref().clone())
                 .collect(),
             noise: Noise::new(scenario.seed, Stream::Fault),
+            scanners: robot.values.scanners.clone(),
             frozen: BTreeMap::new(),
             scan_before: BTreeMap::new(),
             late_scans: Vec::new(),
@@ -42,6 +51,7 @@ impl Faults {
             odometry_past: Vec::new(),
             commands_past: Vec::new(),
             late_commands: Vec::new(),
+            taken: None,
         }
     }
 
@@ -70,11 +80,11 @@ impl Faults {
 
     /// Origin of the host's clock: late enough that 32-bit stamps wrap when they should.
     #[must_use]
-    pub fn clock_base_us(&self) -> u64 {
+    pub fn clock_base_us(scenario: &Scenario) -> u64 {
         let wrap =
             |entry: &FaultEntry| (1_u64 << 32).saturating_sub(microseconds(entry.from_s.get()));
-        self.entries
-            .iter()
+        let mut entries = scenario.fault.iter().map(toml::Spanned::get_ref);
+        entries
             .find(|entry| entry.kind == FaultKind::ScanWrapped)
             .map_or(1_000_000, wrap)
     }
@@ -96,81 +106,30 @@ impl Faults {
         (!dead && !paused, !dead)
     }
 
-    /// How far the host's clock has jumped back at `t_us`.
+    /// What a clock that should say `right_us` says at `t_us`.
     #[must_use]
-    pub fn clock_back_us(&self, t_us: u64) -> u64 {
-        self.offset_us(FaultKind::ClockBackwards, t_us).unwrap_or(0)
+    pub fn clock_us(&self, t_us: u64, right_us: u64) -> u64 {
+        let jump = |kind| self.offset_us(kind, t_us).unwrap_or(0);
+        (right_us + jump(FaultKind::ClockForwards)).saturating_sub(jump(FaultKind::ClockBackwards))
     }
 
-    /// What reaches the kernel of the scans that arrived by `t_us`.
-    pub fn scans(&mut self, t_us: u64, arrived: Vec<RawScan>) -> Vec<RawScan> {
-        let mut out = Vec::new();
-        for mut scan in arrived {
-            self.spoil_ranges(t_us, &mut scan);
-            if self.active(FaultKind::ScanShort, t_us).is_some() {
-                let half = scan.ranges_m.len() / 2;
-                scan.ranges_m.truncate(half);
-                scan.bodies.truncate(half);
-            }
-            self.freeze(t_us, &mut scan);
-            if self.active(FaultKind::ScanWrapped, t_us).is_some() {
-                scan.stamp_us &= 0xFFFF_FFFF;
-            }
-            if let Some(offset) = self.offset_us(FaultKind::ScanFuture, t_us) {
-                scan.stamp_us += offset;
-            }
-            let before = self.scan_before.insert(scan.scanner, scan.clone());
-            if self.active(FaultKind::ScanMissing, t_us).is_some() {
-                continue;
-            }
-            if let Some(offset) = self.offset_us(FaultKind::ScanLate, t_us) {
-                self.late_scans.push((t_us + offset, scan));
-                continue;
-            }
-            out.push(scan);
-            if self.active(FaultKind::ScanReordered, t_us).is_some() {
-                out.extend(before);
-            }
+    /// By how much the tick that is due at `t_us` comes late.
+    pub fn tick_delay_us(&mut self, t_us: u64) -> u64 {
+        let most = self.offset_us(FaultKind::HostJitter, t_us).unwrap_or(0);
+        if most == 0 {
+            return 0;
         }
-        out.extend(due(&mut self.late_scans, t_us));
-        out
+        (self.noise.unit() * most as f64) as u64
     }
 
-    fn spoil_ranges(&mut self, t_us: u64, scan: &mut RawScan) {
-        const SPOILERS: [(FaultKind, f32); 4] = [
-            (FaultKind::RangesNan, f32::NAN),
-            (FaultKind::RangesInfinite, f32::INFINITY),
-            (FaultKind::RangesZero, 0.0),
-            (FaultKind::RangesNegative, -1.0),
-        ];
-        let lost = (FaultKind::BeamsLost, 0.0);
-        for (kind, value) in SPOILERS.into_iter().chain([lost]) {
-            let Some(part) = self
-                .active(kind, t_us)
-                .map(|entry| entry.fraction.map_or(1.0, |f| f.get()))
-            else {
-                continue;
-            };
-            for (range, body) in scan.ranges_m.iter_mut().zip(&mut scan.bodies) {
-                if self.noise.unit() < part {
-                    *range = value;
-                    *body = None;
-                }
-            }
-        }
-    }
-
-    fn freeze(&mut self, t_us: u64, scan: &mut RawScan) {
-        if self.active(FaultKind::ScanFrozen, t_us).is_some() {
-            let held = self
-                .frozen
-                .entry(scan.scanner)
-                .or_insert_with(|| scan.ranges_m.clone());
-            scan.ranges_m.clone_from(held);
-            scan.bodies.fill(None);
-        } else {
-            self.frozen.remove(&scan.scanner);
-        }
+    /// What the drive takes of the set points that are sent to it.
+    pub fn set_point(&mut self, t_us: u64, sent: SetPoint) -> SetPoint {
+        let stuck = self.active(FaultKind::DriveStuck, t_us).is_some();
+        let deaf = self.active(FaultKind::DriveIgnoresStop, t_us).is_some();
+        let kept = self
+            .taken
+            .filter(|taken| stuck || (deaf && slower(sent, *taken)));
+        *self.taken.insert(kept.unwrap_or(sent))
     }
 
     /// What reaches the kernel of an odometry sample that arrived by `t_us`.
@@ -180,15 +139,22 @@ impl Faults {
             out.pose[0] += entry.jump_m.map_or(0.0, |v| v.get());
             out.pose[2] += entry.jump_deg.map_or(0.0, |v| v.get().to_radians());
         }
+        let scaled = self.active(FaultKind::OdometryScaled, t_us);
+        let factor = scaled.and_then(|entry| entry.factor).map(|f| f.get());
         let frozen = self.active(FaultKind::OdometryFrozen, t_us).is_some();
         let sign = self.active(FaultKind::OdometrySign, t_us).is_some();
-        if frozen || sign {
+        if frozen || sign || factor.is_some() {
             let held = *self.odometry_held.get_or_insert(sample);
             if frozen {
                 out = RawOdometry {
                     stamp_us: sample.stamp_us,
                     ..held
                 };
+            } else if let Some(factor) = factor {
+                out.twist = out.twist.map(|value| value * factor);
+                for (value, origin) in out.pose.iter_mut().zip(held.pose) {
+                    *value = origin + factor * (*value - origin);
+                }
             } else {
                 out.twist[0] = -out.twist[0];
                 for (value, origin) in out.pose.iter_mut().zip(held.pose).take(2) {
@@ -212,7 +178,6 @@ impl Faults {
 
     /// What reaches the kernel of a command issued at `t_us`, and of those held back.
     pub fn command(&mut self, t_us: u64, command: RawCommand) -> Option<RawCommand> {
-        use crate::drive::SetPoint;
         let mut out = command;
         if self.active(FaultKind::CommandNan, t_us).is_some() {
             out.motion = match out.motion {
@@ -238,6 +203,11 @@ impl Faults {
         }
         due(&mut self.late_commands, t_us).pop().or(arrived)
     }
+}
+
+/// Whether one set point asks for less of speed or turn rate than another.
+fn slower(one: SetPoint, other: SetPoint) -> bool {
+    one.speed().abs() < other.speed().abs() || one.turn_rate().abs() < other.turn_rate().abs()
 }
 
 /// Takes out what is due by `t_us`, oldest first.

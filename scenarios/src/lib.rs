@@ -8,6 +8,7 @@
 pub mod assumption;
 pub mod barn;
 pub mod batch;
+pub mod catalogue;
 pub mod contact;
 pub mod controller;
 pub mod drive;
@@ -27,6 +28,7 @@ pub mod proposer;
 pub mod raycast;
 pub mod result;
 pub mod sensor;
+pub mod skid;
 pub mod sweep;
 pub mod trace;
 pub mod verdict;

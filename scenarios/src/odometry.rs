@@ -85,6 +85,11 @@ impl Odometer {
         self.curvature = self.curvature.map(|_| curvature);
     }
 
+    /// Takes in a displacement in the robot's frame that the wheels know nothing of.
+    pub fn slide(&mut self, slid: Pose) {
+        self.pose = self.pose.then(slid);
+    }
+
     /// The sample that is due at `now_us`, with its arrival time.
     pub fn sample(&mut self, now_us: u64) -> Option<(u64, RawOdometry)> {
         if now_us < self.next_us {

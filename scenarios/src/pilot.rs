@@ -18,11 +18,8 @@ use crate::file::{Navigate, Scenario};
 use crate::math::{Pose, seconds};
 use crate::navigation::{ProgressRecord, Said};
 
-/// Cells of the planning grid along each side: 20 m at 0.1 m.
-pub const GRID_CELLS: usize = 200;
-
 /// The navigator at the capacities of the robot files.
-pub type RobotNavigator = Navigator<SCANNERS, BEAMS, MEMORY, GRID_CELLS, GRID_CELLS>;
+pub type RobotNavigator = Navigator<SCANNERS, BEAMS, MEMORY>;
 
 /// A via point counts as passed within this distance where the scenario says nothing.
 const VIA_TOLERANCE_M: f64 = 0.3;
@@ -72,7 +69,7 @@ impl Pilot {
         let points = scenario.via_m();
         let via: Option<Vec<Via>> = points.into_iter().map(via).collect();
         Ok(Self {
-            navigator: boxed(robot, planning(&navigate)?)?,
+            navigator: boxed(robot, planning(&navigate)?).map_err(PilotError::Navigator)?,
             via: via.ok_or(PilotError::Route)?,
             goal: destination(scenario, &navigate, &frame).ok_or(PilotError::Route)?,
             ordered: None,
@@ -85,10 +82,13 @@ impl Pilot {
 const BUILDER_STACK: usize = 16 << 20;
 
 /// A navigator on the heap. It is put together on the stack first, so on a thread that has enough.
-fn boxed(robot: &Robot, planning: Planning) -> Result<Box<RobotNavigator>, PilotError> {
+///
+/// # Errors
+/// What [`Navigator::new`] refuses.
+pub fn boxed(robot: &Robot, planning: Planning) -> Result<Box<RobotNavigator>, NavigatorError> {
     let config = robot.config;
     let make = move || RobotNavigator::new(config, planning).map(Box::new);
-    let built = match std::thread::Builder::new()
+    match std::thread::Builder::new()
         .stack_size(BUILDER_STACK)
         .spawn(make)
     {
@@ -97,8 +97,7 @@ fn boxed(robot: &Robot, planning: Planning) -> Result<Box<RobotNavigator>, Pilot
             .unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
         // No thread to be had: this one may do.
         Err(_) => make(),
-    };
-    built.map_err(PilotError::Navigator)
+    }
 }
 
 /// The odometry starts at zero where the robot starts.
@@ -178,7 +177,6 @@ fn planning(navigate: &Navigate) -> Result<Planning, PilotError> {
             distance_m: or(navigate.nearer_m.map(plain), rules.distance_m),
             time,
         },
-        ..own
     })
 }
 
@@ -193,6 +191,7 @@ impl Controller for Pilot {
             id: 1,
             via: &self.via,
             goal: self.goal,
+            ..Route::default()
         });
         let answer = self.navigator.step(inputs, route.as_ref(), now);
         self.said = Some(answer);
@@ -208,11 +207,17 @@ impl Controller for Pilot {
     }
 
     fn said(&self, pose: &Pose, base_us: u64) -> Option<Said> {
-        let answer = self.said?;
-        Some(Said {
-            progress: progress(&answer.progress, pose, base_us),
-            refused: u32::from(answer.refused),
-        })
+        Some(said(&self.said?, pose, base_us))
+    }
+}
+
+/// A navigator's answer in the words of the results; `pose` is the true pose at that tick,
+/// `base_us` the origin of the host's clock.
+#[must_use]
+pub fn said(answer: &Navigation, pose: &Pose, base_us: u64) -> Said {
+    Said {
+        progress: progress(&answer.progress, pose, base_us),
+        refused: u32::from(answer.refused),
     }
 }
 

@@ -171,6 +171,10 @@ pub struct MonitorReport {
     pub violation_count: u64,
     /// The first of them.
     pub violations: Vec<Violation>,
+    /// Least signed distance to a violation, negative once violated; none where there is none to measure. Metres for
+    /// ZONE, seconds for FRESH and SILENT, m/s or rad/s for LIMIT; CLAIM's is the clearance while moving.
+    #[serde(skip)]
+    pub margin: Option<f64>,
 }
 
 /// An assumption of the robot's contract that the scenario did not keep.

@@ -77,6 +77,8 @@ impl ScannerModel {
 pub struct Sensors {
     scanners: Vec<(Scanner, ScannerModel)>,
     next_us: Vec<u64>,
+    /// When scanners are turned on their mounts, and by how much.
+    turned: Vec<(core::ops::Range<u64>, f64)>,
     noise: Noise,
 }
 
@@ -93,6 +95,7 @@ impl Sensors {
         Self {
             next_us: vec![0; scanners.len()],
             scanners,
+            turned: turned(scenario),
             noise,
         }
     }
@@ -119,9 +122,13 @@ impl Sensors {
                 continue;
             };
             while *next + model.sweep_us <= now_us {
+                let knocks = self.turned.iter();
+                let knocks = knocks.filter(|(span, _)| span.contains(next));
+                let mut scanner = scanner.clone();
+                scanner.yaw_rad += knocks.map(|(_, turn)| turn).sum::<f64>();
                 let scan = take(
                     index,
-                    scanner,
+                    &scanner,
                     model,
                     *next,
                     world,
@@ -134,6 +141,19 @@ impl Sensors {
         }
         done
     }
+}
+
+/// The faults of a scenario that turn its scanners.
+fn turned(scenario: &Scenario) -> Vec<(core::ops::Range<u64>, f64)> {
+    let faults = scenario.fault.iter().map(toml::Spanned::get_ref);
+    faults
+        .filter_map(|fault| {
+            let turn = fault.turn_deg?.get().to_radians();
+            let until = fault.until_s.map(|until| microseconds(until.get()));
+            let from = microseconds(fault.from_s.get());
+            Some((from..until.unwrap_or(u64::MAX), turn))
+        })
+        .collect()
 }
 
 /// What an order of bodies forgives on top of every known motion, metres.
@@ -209,7 +229,9 @@ pub fn no_return(encoding: Encoding) -> f32 {
     }
 }
 
-fn lost_range(encoding: Encoding) -> f32 {
+/// What the format writes for a beam that was lost.
+#[must_use]
+pub fn lost_range(encoding: Encoding) -> f32 {
     match encoding {
         Encoding::Rep117 | Encoding::ZeroIsNone => f32::NAN,
         Encoding::ZeroIsInvalid => 0.0,

@@ -117,30 +117,25 @@ fn naked_corridor_run_is_as_it_was() {
     insta::assert_snapshot!("naked_corridor_ahead_trace", lines.join("\n"));
 }
 
+/// The guarded run of a shipped case, which must be judged a pass.
+fn passed(name: &str) -> RunResult {
+    let run = run_case(&case(name)).expect("the kernel takes the robot");
+    let judgement = &run.result.judgement;
+    let sentences = &judgement.sentences;
+    assert_eq!(judgement.outcome, Outcome::Pass, "{name}: {sentences:?}");
+    run.result.guarded
+}
+
 #[test]
 fn nan_ranges_stop_the_robot_as_they_did() {
-    let run = run_case(&case("input_ranges_nan")).expect("the kernel takes the robot");
-    let judgement = &run.result.judgement;
-    assert_eq!(
-        judgement.outcome,
-        Outcome::Pass,
-        "{:?}",
-        judgement.sentences
-    );
-    insta::assert_snapshot!("input_ranges_nan", summary(&run.result.guarded));
+    let run = passed("input_ranges_nan");
+    insta::assert_snapshot!("input_ranges_nan", summary(&run));
 }
 
 #[test]
 fn uncovered_host_death_is_named() {
-    let run = run_case(&case("host_death_uncovered")).expect("the kernel takes the robot");
-    let judgement = &run.result.judgement;
-    assert_eq!(
-        judgement.outcome,
-        Outcome::Pass,
-        "{:?}",
-        judgement.sentences
-    );
-    insta::assert_snapshot!("host_death_uncovered", summary(&run.result.guarded));
+    let run = passed("host_death_uncovered");
+    insta::assert_snapshot!("host_death_uncovered", summary(&run));
 }
 
 /// What the navigator says at the end, coarse enough to survive a change of noise.
@@ -160,28 +155,13 @@ fn navigated(run: &RunResult) -> String {
 
 #[test]
 fn kernel_drives_through_the_widest_passage_as_it_did() {
-    let run = run_case(&case("navigate_passages")).expect("the kernel takes the robot");
-    let judgement = &run.result.judgement;
-    assert_eq!(
-        judgement.outcome,
-        Outcome::Pass,
-        "{:?}",
-        judgement.sentences
-    );
-    insta::assert_snapshot!("navigate_passages", navigated(&run.result.guarded));
+    let run = passed("navigate_passages");
+    insta::assert_snapshot!("navigate_passages", navigated(&run));
 }
 
 #[test]
 fn kernel_says_why_it_stops_before_a_passage_that_is_too_narrow() {
-    let run = run_case(&case("navigate_passages_closed")).expect("the kernel takes the robot");
-    let judgement = &run.result.judgement;
-    assert_eq!(
-        judgement.outcome,
-        Outcome::Pass,
-        "{:?}",
-        judgement.sentences
-    );
-    let text = navigated(&run.result.guarded);
+    let text = navigated(&passed("navigate_passages_closed"));
     // How often it tries again before it stands is a matter of tuning, so only the ends are kept.
     let lines: Vec<&str> = text.lines().filter(|line| !line.contains(" s ")).collect();
     insta::assert_snapshot!("navigate_passages_closed", lines.join("\n"));

@@ -11,7 +11,7 @@ use crate::drive::SetPoint;
 use crate::faults::Faults;
 use crate::file::Scenario;
 use crate::math::{microseconds, seconds};
-use crate::monitor::{DecisionRecord, Monitors, Tick, Touch};
+use crate::monitor::{DecisionRecord, Monitors, Standing, Tick, Touch};
 use crate::navigation::NavigationRecord;
 use crate::proposer::{Driver, RawCommand};
 use crate::result::RunResult;
@@ -44,7 +44,7 @@ impl<'a> Host<'a> {
         engine: &Engine<'_>,
         controller: Option<Box<dyn Controller>>,
     ) -> Self {
-        let faults = Faults::new(scenario);
+        let faults = Faults::new(scenario, robot);
         let driver = Driver::new(robot, scenario);
         let start = &scenario.start;
         let (v, omega) = (start.linear_mps.get(), start.angular_radps.get());
@@ -84,7 +84,10 @@ impl<'a> Host<'a> {
     pub(super) fn step(&mut self, t_us: u64, engine: &mut Engine<'_>) {
         let (called, alive) = self.faults.host(t_us);
         if t_us >= self.next_us {
+            // Counted from a late tick: a host never ticks faster than its period.
             self.next_us += self.period_us;
+            let late_us = self.faults.tick_delay_us(self.next_us);
+            self.next_us += late_us.next_multiple_of(super::STEP_US);
             if called {
                 self.tick(t_us, engine);
                 return;
@@ -103,7 +106,8 @@ impl<'a> Host<'a> {
             self.pass_on(t_us, &inputs)
         };
         self.sent = set_point;
-        engine.drive.command(t_us, set_point);
+        let taken = self.faults.set_point(t_us, set_point);
+        engine.drive.command(t_us, taken);
     }
 
     fn collect(&mut self, t_us: u64, engine: &mut Engine<'_>) -> TickInputs {
@@ -137,10 +141,11 @@ impl<'a> Host<'a> {
 
     /// The guarded way: kernel, then monitors.
     fn decide(&mut self, t_us: u64, inputs: &TickInputs, engine: &mut Engine<'_>) -> SetPoint {
-        let now_us = (t_us + self.base_us).saturating_sub(self.faults.clock_back_us(t_us));
+        let now_us = self.faults.clock_us(t_us, t_us + self.base_us);
         let Some(controller) = &mut self.controller else {
             return self.sent;
         };
+        controller.sense(&engine.pose(), haltline::time::Instant::from_us(now_us));
         let decision = tick(controller.as_mut(), self.robot, inputs, now_us);
         let mut record = record(&decision);
         let pose = engine.pose();
@@ -155,6 +160,12 @@ impl<'a> Host<'a> {
         }
         let pose_at = |at_us: u64| engine.pose_at(at_us);
         let rested = engine.rested(t_us, self.robot.values.timing.rest_s);
+        let standing = match (engine.moving(), rested) {
+            (true, _) => Standing::Moving,
+            (false, false) => Standing::Still,
+            (false, true) => Standing::Rested,
+        };
+        self.monitors.stands(&engine.distances(t_us), standing);
         self.monitors.tick(Tick::new(
             (seconds(t_us), now_us),
             inputs,
@@ -236,7 +247,8 @@ impl<'a> Host<'a> {
                 curvature,
             },
         };
-        engine.drive.command(t_us, self.sent);
+        let taken = self.faults.set_point(t_us, self.sent);
+        engine.drive.command(t_us, taken);
     }
 
     /// A moving robot began to overlap a body.

@@ -24,6 +24,7 @@ use crate::populate::populate;
 use crate::proposer::GoalDisc;
 use crate::result::RunResult;
 use crate::sensor::{RawScan, Sensors, beam_time_us};
+use crate::skid::Slide;
 use crate::world::World;
 use host::Host;
 use recorder::Recorder;
@@ -55,14 +56,15 @@ struct Engine<'a> {
     sensors: Sensors,
     odometer: Odometer,
     drive: Drive,
+    slide: Slide,
     goal: Option<GoalDisc>,
     via_m: Vec<[f64; 2]>,
     transit: Transit,
     /// True pose at every dynamics step so far.
     history: Vec<Pose>,
     rest_since_us: Option<u64>,
-    /// Returned points of the newest scan of each scanner, in the world.
-    returns: Vec<Vec<[f64; 2]>>,
+    /// The newest scan of each scanner that reached the host.
+    newest: Vec<Option<RawScan>>,
     /// Origin of the host's clock, for the stamps of all data.
     base_us: u64,
     broken: Vec<Broken>,
@@ -124,6 +126,7 @@ impl<'a> Engine<'a> {
                 steered,
                 [start.linear_mps.get(), start.angular_radps.get()],
             ),
+            slide: Slide::new(scenario),
             goal: GoalDisc::of(scenario),
             via_m: scenario.via_m(),
             transit: Transit::default(),
@@ -133,8 +136,8 @@ impl<'a> Engine<'a> {
                 start.heading_deg.get().to_radians(),
             )],
             rest_since_us: Some(0),
-            returns: vec![Vec::new(); robot.values.scanners.len()],
-            base_us: Faults::new(scenario).clock_base_us(),
+            newest: vec![None; robot.values.scanners.len()],
+            base_us: Faults::clock_base_us(scenario),
             broken: assumption::broken(robot, scenario, &world, odometer.error),
             odometer,
             robot,
@@ -185,13 +188,13 @@ impl<'a> Engine<'a> {
     fn vouch(&mut self, t_us: u64) {
         let pose = self.pose();
         let away = |[x, y]: [f64; 2]| libm::hypot(x - pose.x, y - pose.y);
-        let radius_m = self.returns.iter().zip(&self.robot.values.scanners).fold(
-            self.robot.values.memory.clear_at_start_m,
-            |radius, (points, scanner)| {
-                let nearest = points.iter().map(|point| away(*point) - scanner.error_m());
-                nearest.fold(radius, f64::min)
-            },
-        );
+        let scans = self.newest.iter().flatten();
+        let radius_m = scans.fold(self.robot.values.memory.clear_at_start_m, |radius, scan| {
+            let nearest = self
+                .returns(scan)
+                .map(|(point, error_m)| away(point) - error_m);
+            nearest.fold(radius, f64::min)
+        });
         let t_s = seconds(t_us);
         let distances = self
             .judge
@@ -244,7 +247,9 @@ impl<'a> Engine<'a> {
         let scans = arrived(&mut self.transit.scans, t_us);
         let scans = faults.scans(t_us, scans);
         for scan in &scans {
-            self.note_returns(scan);
+            if let Some(newest) = self.newest.get_mut(scan.scanner) {
+                *newest = Some(scan.clone());
+            }
         }
         let samples = arrived(&mut self.transit.odometry, t_us);
         let odometry = samples
@@ -254,28 +259,25 @@ impl<'a> Engine<'a> {
         (scans, odometry)
     }
 
-    /// Keeps where the beams of a scan came back from, in the world.
-    fn note_returns(&mut self, scan: &RawScan) {
-        let Some(scanner) = self.robot.values.scanners.get(scan.scanner) else {
-            return;
-        };
+    /// Where the beams of a scan came back from, in the world, with the error each may have.
+    fn returns(&self, scan: &RawScan) -> impl Iterator<Item = ([f64; 2], f64)> {
+        let scanner = self.robot.values.scanners.get(scan.scanner);
         let sweep_us = self.sensors.sweep_us(scan.scanner);
         let count = scan.ranges_m.len();
         let beams = scan.ranges_m.iter().zip(&scan.bodies).enumerate();
-        let points = beams
+        beams
             .filter(|(_, (range, body))| body.is_some() && range.is_finite() && **range > 0.0)
-            .map(|(beam, (range, _))| {
+            .filter_map(move |(beam, (range, _))| {
+                let scanner = scanner?;
                 let at_us = beam_time_us(scan.begun_us, sweep_us, beam, count);
                 let heading = scanner.first_beam_rad() + scanner.increment_rad() * beam as f64;
                 let mount = Pose::new(scanner.x_m, scanner.y_m, heading);
-                self.pose_at(at_us)
+                let point = self
+                    .pose_at(at_us)
                     .then(mount)
-                    .apply([f64::from(*range), 0.0])
+                    .apply([f64::from(*range), 0.0]);
+                Some((point, scanner.error_m()))
             })
-            .collect();
-        if let Some(newest) = self.returns.get_mut(scan.scanner) {
-            *newest = points;
-        }
     }
 
     /// Integrates drive, pose and odometer over one step.
@@ -283,11 +285,13 @@ impl<'a> Engine<'a> {
         let dt_s = STEP_US as f64 * 1e-6;
         let moved = self.drive.step(t_us, dt_s);
         let [v, omega] = moved.ground;
-        let pose = self.pose().advance(v, omega, dt_s);
+        let slid = self.slide.step(t_us, dt_s, self.moving());
+        let pose = self.pose().advance(v, omega, dt_s).then(slid);
         self.history.push(pose);
         let curvature = self.drive.curvature();
         self.odometer
             .advance(moved.wheels, self.drive.wheels(), curvature, dt_s);
+        self.odometer.slide(slid);
     }
 }
 

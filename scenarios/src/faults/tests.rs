@@ -1,13 +1,13 @@
 //! What each fault does to data on their way.
 
 use super::*;
-use crate::drive::SetPoint;
-use crate::testing::{ROOM, scenario};
+use crate::file::fault::KINDS;
+use crate::testing::{ROOM, robot, scenario};
 
 /// The room with one fault from 1 s to 2 s.
 fn faults(kind: &str, rest: &str) -> Faults {
     let entry = format!("\n[[fault]]\nkind = \"{kind}\"\nfrom_s = 1.0\nuntil_s = 2.0\n{rest}");
-    Faults::new(&scenario(&format!("{ROOM}{entry}")))
+    Faults::new(&scenario(&format!("{ROOM}{entry}")), &robot())
 }
 
 fn scan(stamp_us: u64, range: f32) -> RawScan {
@@ -107,7 +107,8 @@ fn frozen_scan_keeps_its_ranges_under_fresh_stamps() {
 #[test]
 fn wrapped_stamps_wrap_when_the_fault_begins() {
     let mut faults = faults("scan_wrapped", "");
-    let base = faults.clock_base_us();
+    let entry = "\n[[fault]]\nkind = \"scan_wrapped\"\nfrom_s = 1.0\n";
+    let base = Faults::clock_base_us(&scenario(&format!("{ROOM}{entry}")));
     assert_eq!(base + 1_000_000, 1 << 32);
     let out = faults.scans(1_100_000, vec![scan(base + 1_100_000, 1.0)]);
     assert_eq!(out[0].stamp_us, 100_000);
@@ -177,6 +178,104 @@ fn host_pauses_dies_and_its_clock_jumps() {
     assert_eq!(faults("host_death", "").host(1_500_000), (false, false));
     assert_eq!(faults("host_pause", "").host(2_500_000), (true, true));
     let clock = faults("clock_backwards", "offset_s = 0.7\n");
-    assert_eq!(clock.clock_back_us(1_500_000), 700_000);
-    assert_eq!(clock.clock_back_us(500_000), 0);
+    assert_eq!(clock.clock_us(1_500_000, 9_000_000), 8_300_000);
+    assert_eq!(clock.clock_us(500_000, 9_000_000), 9_000_000);
+    let ahead = faults("clock_forwards", "offset_s = 0.7\n");
+    assert_eq!(ahead.clock_us(1_500_000, 9_000_000), 9_700_000);
+}
+
+/// Ranges that rise with the beam, 0.1 m each, from all around.
+fn fan(beams: usize) -> RawScan {
+    RawScan {
+        ranges_m: (1..=beams).map(|beam| beam as f32 * 0.1).collect(),
+        bodies: (0..beams).map(Some).collect(),
+        ..scan(1_500_000, 1.0)
+    }
+}
+
+fn ranges(kind: &str, rest: &str) -> Vec<f32> {
+    let mut out = faults(kind, rest).scans(1_500_000, vec![fan(541)]);
+    out.remove(0).ranges_m
+}
+
+#[test]
+fn ranges_saturate_come_in_steps_and_at_another_scale() {
+    let near = |a: f32, b: f32| (a - b).abs() < 1e-4;
+    let saturated = ranges("ranges_saturated", "range_m = 3.0\n");
+    assert!(near(saturated[9], 1.0) && near(saturated[300], 3.0));
+    let coarse = ranges("ranges_quantised", "range_m = 0.4\n");
+    assert!(near(coarse[0], 0.4) && near(coarse[10], 1.2) && near(coarse[8], 0.8));
+    let scaled = ranges("ranges_scaled", "factor = 1.1\n");
+    assert!(near(scaled[9], 1.1) && near(scaled[99], 11.0));
+}
+
+#[test]
+fn sectors_are_lost_or_show_something_else() {
+    // Invalid beams are zero. The beams of the Seekur Jr run from -135 to 135 degrees in steps of half a degree.
+    let sector = "sector_deg = [-5.0, 5.0]\n";
+    let lost = ranges("sector_lost", sector);
+    let gone: Vec<usize> = (0..541).filter(|beam| lost[*beam] <= 0.0).collect();
+    assert!((20..=21).contains(&gone.len()), "{}", gone.len());
+    assert!(gone.contains(&270) && !gone.contains(&250));
+    let spoofed = ranges("sector_spoofed", &format!("{sector}range_m = 7.0\n"));
+    assert!((spoofed[270] - 7.0).abs() < 1e-6 && (spoofed[200] - 20.1).abs() < 1e-3);
+}
+
+#[test]
+fn scans_are_mirrored_and_doubled() {
+    let mirrored = ranges("scan_mirrored", "");
+    assert!((mirrored[0] - 54.1).abs() < 1e-3 && (mirrored[540] - 0.1).abs() < 1e-6);
+    let twice = faults("scan_duplicated", "").scans(1_500_000, vec![fan(541)]);
+    assert_eq!(twice[0], twice[1]);
+}
+
+#[test]
+fn stamps_lie_in_the_past_or_jitter() {
+    let times = [1_200_000, 1_400_000, 2_100_000];
+    assert_eq!(
+        stamps(&mut faults("scan_past", "offset_s = 0.1\n"), &times),
+        [1_100_000, 1_300_000, 2_100_000]
+    );
+    let jittered = stamps(&mut faults("scan_jitter", "offset_s = 0.1\n"), &times);
+    assert!(jittered[0].abs_diff(1_200_000) <= 100_000 && jittered[0] != 1_200_000);
+    assert_eq!(jittered[2], 2_100_000);
+}
+
+#[test]
+fn odometry_counts_at_another_scale() {
+    let mut faults = faults("odometry_scaled", "factor = 0.5\n");
+    faults.odometry(1_100_000, sample(1_100_000, 1.0));
+    let scaled = faults.odometry(1_200_000, sample(1_200_000, 1.2));
+    let scaled = scaled.expect("it arrives");
+    assert!((scaled.pose[0] - 1.1).abs() < 1e-12 && (scaled.twist[0] - 0.25).abs() < 1e-12);
+}
+
+#[test]
+fn ticks_come_late_within_the_window_only() {
+    let mut faults = faults("host_jitter", "offset_s = 0.03\n");
+    assert_eq!(faults.tick_delay_us(500_000), 0);
+    let late: Vec<u64> = (0..50).map(|_| faults.tick_delay_us(1_500_000)).collect();
+    assert!(late.iter().all(|us| *us < 30_000) && late.iter().any(|us| *us > 10_000));
+}
+
+#[test]
+fn drives_are_stuck_or_do_not_hear_a_stop() {
+    let twist = |v| SetPoint::Twist { v, omega: 0.0 };
+    let mut stuck = faults("drive_stuck", "");
+    assert_eq!(stuck.set_point(900_000, twist(0.3)), twist(0.3));
+    assert_eq!(stuck.set_point(1_100_000, twist(0.5)), twist(0.3));
+    assert_eq!(stuck.set_point(2_100_000, twist(0.0)), twist(0.0));
+    let mut deaf = faults("drive_ignores_stop", "");
+    assert_eq!(deaf.set_point(1_100_000, twist(0.3)), twist(0.3));
+    assert_eq!(deaf.set_point(1_200_000, twist(0.5)), twist(0.5));
+    assert_eq!(deaf.set_point(1_300_000, twist(0.1)), twist(0.5));
+    assert_eq!(deaf.set_point(2_100_000, twist(0.1)), twist(0.1));
+}
+
+#[test]
+fn the_list_of_kinds_is_whole() {
+    let mut names: Vec<String> = KINDS.iter().map(|kind| format!("{kind:?}")).collect();
+    names.sort();
+    names.dedup();
+    assert_eq!(names.len(), KINDS.len());
 }

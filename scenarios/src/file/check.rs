@@ -184,22 +184,31 @@ fn check_naked(scenario: &Scenario) -> Result<(), Complaint> {
 }
 
 fn check_fault(fault: &FaultEntry) -> Result<(), String> {
-    if fault.kind.needs_offset() != fault.offset_s.is_some() {
-        return Err(format!(
-            "{:?} {} offset_s",
-            fault.kind,
-            if fault.kind.needs_offset() {
-                "needs"
-            } else {
-                "does not take"
-            }
-        ));
+    let kind = fault.kind;
+    let keys = [
+        ("offset_s", kind.needs_offset(), fault.offset_s.is_some()),
+        ("range_m", kind.needs_range(), fault.range_m.is_some()),
+        (
+            "sector_deg",
+            kind.needs_sector(),
+            fault.sector_deg.is_some(),
+        ),
+        ("factor", kind.needs_factor(), fault.factor.is_some()),
+        (
+            "turn_deg",
+            kind == FaultKind::ScanRotated,
+            fault.turn_deg.is_some(),
+        ),
+    ];
+    if let Some((key, needed, _)) = keys.iter().find(|(_, needed, given)| needed != given) {
+        let verb = if *needed { "needs" } else { "does not take" };
+        return Err(format!("{kind:?} {verb} {key}"));
     }
-    if fault.fraction.is_some() && !fault.kind.takes_fraction() {
-        return Err(format!("{:?} does not take fraction", fault.kind));
+    if fault.fraction.is_some() && !kind.takes_fraction() {
+        return Err(format!("{kind:?} does not take fraction"));
     }
     let jumps = fault.jump_m.is_some() || fault.jump_deg.is_some();
-    if jumps != (fault.kind == FaultKind::OdometryJump) {
+    if jumps != (kind == FaultKind::OdometryJump) {
         return Err("jump_m and jump_deg belong to odometry_jump, which needs one of them".into());
     }
     if fault.until_s.is_some_and(|until| until <= fault.from_s) {

@@ -63,6 +63,9 @@ pub struct Scenario {
     /// Other values for keys of the robot file, by their dotted paths.
     #[serde(default)]
     pub robot_values: BTreeMap<Spanned<String>, toml::Value>,
+    /// What the kernel alone is told about the robot, instead of the truth; dotted keys of the robot file.
+    #[serde(default)]
+    pub told: BTreeMap<Spanned<String>, toml::Value>,
     /// Where the robot stands at time zero.
     #[serde(default)]
     pub start: Start,
@@ -236,6 +239,23 @@ pub struct Drive {
     pub silent_braking_mps2: Option<Positive>,
     /// Whether the adapter stops at the decision's expiry while the kernel pauses; default true.
     pub honours_expiry: Option<bool>,
+    /// A skid: the wheels turn as they should, the robot goes elsewhere.
+    pub skid: Option<Skid>,
+}
+
+/// A skid while the robot moves: the pose is displaced in the robot's frame, the odometry pose tells it and the
+/// measured twist does not.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Skid {
+    /// First moment.
+    pub from_s: NonNegative,
+    /// How long the robot moves until it has slid all the way.
+    pub for_s: Positive,
+    /// How far ahead it ends, signed.
+    pub ahead_m: Number,
+    /// How far to the left it ends, signed.
+    pub left_m: Number,
 }
 
 /// What a drive does when its watchdog expires.

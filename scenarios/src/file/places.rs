@@ -7,7 +7,7 @@ use super::{Scenario, ScenarioError};
 
 /// Line and column, from 1, of the parts of a file that may be complained about later.
 ///
-/// Paths look like `wall.0`, `box.1`, `circle.2`, `step.0`, `proposer`, `robot_values.KEY`. In the
+/// Paths look like `wall.0`, `box.1`, `circle.2`, `step.0`, `proposer`, `robot_values.KEY`, `told.KEY`. In the
 /// variants of a sweep they are the places in the file as it was written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Places {
@@ -44,6 +44,9 @@ impl Places {
             note(path, span);
         }
         note("proposer".to_owned(), scenario.proposer.span());
+        for key in scenario.told.keys() {
+            note(format!("told.{}", key.get_ref()), key.span());
+        }
         for key in scenario.robot_values.keys() {
             note(format!("robot_values.{}", key.get_ref()), key.span());
         }

@@ -26,8 +26,18 @@ impl Fresh {
             ("odometry", newest.odometry, timing.odometry_age_max_s),
             ("command", newest.command, timing.command_age_max_s),
         ];
-        let stale: Vec<String> = scans
-            .chain(others)
+        let channels: Vec<_> = scans.chain(others).collect();
+        let left = channels.iter().filter_map(|(_, stamp, limit_s)| {
+            let age_us = tick.now_us.checked_sub((*stamp)?)?;
+            Some(limit_s - age_us as f64 * 1e-6)
+        });
+        if let Some(left) = left.reduce(f64::min)
+            && tick.decision.moves()
+        {
+            self.ledger.near(left);
+        }
+        let stale: Vec<String> = channels
+            .into_iter()
             .filter_map(|(what, stamp, limit_s)| complaint(what, stamp, limit_s, tick.now_us))
             .collect();
         self.ledger.judged(!stale.is_empty());

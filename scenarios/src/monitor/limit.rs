@@ -36,6 +36,7 @@ impl Limit {
             self.rest_wanted = tick.decision.wants_rest;
         }
         self.ledger.judged(tick.decision.moves());
+        self.ledger.near(room(robot, set_point));
         for what in outside(robot, set_point) {
             self.ledger.violated(tick.t_s, what);
         }
@@ -78,6 +79,17 @@ impl Limit {
                 before.turn_rate()
             )
         })
+    }
+}
+
+/// How far a set point is inside the speed limits, m/s or rad/s.
+fn room(robot: &Robot, set_point: SetPoint) -> f64 {
+    let limits = &robot.values.limits;
+    let v = set_point.speed();
+    let linear = (limits.speed_forward_mps - v).min(v + limits.speed_reverse_mps);
+    match set_point {
+        SetPoint::Twist { omega, .. } => linear.min(limits.angular_speed_radps - omega.abs()),
+        SetPoint::Arc { .. } => linear,
     }
 }
 

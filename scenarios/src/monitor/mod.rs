@@ -3,6 +3,7 @@
 //! Each monitor states one family of requirements in its own arithmetic, so a mistake in the
 //! kernel cannot hide in a shared function. Each has a test in which it fires.
 
+mod brake;
 mod claim;
 mod fresh;
 mod input;
@@ -24,6 +25,7 @@ use crate::drive::SetPoint;
 use crate::math::Pose;
 use crate::result::{MonitorReport, Violation};
 use crate::world::World;
+pub use claim::{BUMPED, EXCUSED, FORGOTTEN, OUT_OF_SIGHT};
 use usable::Newest;
 
 /// A decision in SI units.
@@ -75,6 +77,17 @@ pub struct Tick<'a> {
     newest: Newest,
 }
 
+/// How the robot truly stands at a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// It moves.
+    Moving,
+    /// It does not, but has not rested for its rest time.
+    Still,
+    /// It has rested for its rest time.
+    Rested,
+}
+
 /// A contact at one dynamics step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
@@ -102,6 +115,7 @@ impl Ledger {
                 engaged: 0,
                 violation_count: 0,
                 violations: Vec::new(),
+                margin: None,
             },
         }
     }
@@ -110,6 +124,12 @@ impl Ledger {
     fn judged(&mut self, engaged: bool) {
         self.report.checked += 1;
         self.report.engaged += u64::from(engaged);
+    }
+
+    /// Notes how far a tick was from a violation.
+    fn near(&mut self, margin: f64) {
+        let least = self.report.margin.map_or(margin, |least| least.min(margin));
+        self.report.margin = Some(least);
     }
 
     fn violated(&mut self, t_s: f64, what: String) {
@@ -125,6 +145,7 @@ pub struct Monitors<'r> {
     robot: &'r Robot,
     newest: Newest,
     claim: claim::Claim,
+    brake: brake::Brake,
     limit: limit::Limit,
     zone: zone::Zone,
     fresh: fresh::Fresh,
@@ -146,7 +167,8 @@ impl<'r> Monitors<'r> {
         Self {
             robot,
             newest: Newest::new(robot),
-            claim: claim::Claim::new(names, moves),
+            claim: claim::Claim::new(robot, names, moves),
+            brake: brake::Brake::new(),
             limit: limit::Limit::new(),
             zone: zone::Zone::new(),
             fresh: fresh::Fresh::new(),
@@ -161,12 +183,18 @@ impl<'r> Monitors<'r> {
         let fresh_scans = self.newest.take_in(self.robot, tick.inputs, tick.now_us);
         tick.newest = self.newest.clone();
         self.claim.tick(&tick, &fresh_scans);
+        self.brake.tick(self.robot, &tick);
         self.limit.tick(self.robot, &tick);
         self.zone.tick(self.robot, &tick, &fresh_scans);
         self.fresh.tick(self.robot, &tick);
         self.silent.tick(self.robot, &tick);
         self.latch.tick(&tick);
         self.input.tick(self.robot, &tick);
+    }
+
+    /// Hears before a tick how far each body is from the footprint, and how the robot stands.
+    pub fn stands(&mut self, distances_m: &[f64], standing: Standing) {
+        self.claim.stands(distances_m, standing);
     }
 
     /// Judges the first dynamics step at which a moving robot overlaps a body.
@@ -179,6 +207,7 @@ impl<'r> Monitors<'r> {
     pub fn finish(self) -> Vec<MonitorReport> {
         vec![
             self.claim.ledger.report,
+            self.brake.ledger.report,
             self.limit.ledger.report,
             self.zone.ledger.report,
             self.fresh.ledger.report,

@@ -22,7 +22,10 @@ impl Silent {
         let timing = &robot.values.timing;
         let patience_us = ((timing.period_s + timing.jitter_s) * 1e6).round() as u64;
         let expires_us = tick.decision.expires_us;
-        if expires_us > tick.now_us + patience_us {
+        let allowed_us = tick.now_us + patience_us;
+        self.ledger
+            .near((allowed_us as f64 - expires_us as f64) * 1e-6);
+        if expires_us > allowed_us {
             self.ledger.violated(
                 tick.t_s,
                 format!(

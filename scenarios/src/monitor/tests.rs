@@ -1,5 +1,7 @@
 //! Every monitor fires when it should, and only then.
 
+mod brake;
+mod excused;
 mod navigate;
 
 use super::*;
@@ -124,7 +126,7 @@ fn good_ticks_are_not_objected_to() {
     let mut bench = Bench::running(&robot);
     bench.tick(decision(Action::Pass, 0.03), |_| {});
     bench.tick(decision(Action::Slow, 0.04), |_| {});
-    bench.tick(decision(Action::Brake, 0.02), |_| {});
+    bench.tick(decision(Action::Brake, 0.01), |_| {});
     assert_eq!(bench.fired(), Vec::<String>::new());
 }
 
@@ -259,7 +261,11 @@ fn latch_fires_before_reset_on_replay_and_on_growth() {
 
     let mut growth = Bench::running(&robot);
     growth.tick(decision(Action::ProtectiveStop, 0.02), |_| {});
-    assert_eq!(growth.fired(), ["LATCH"], "a stop may not speed up");
+    assert_eq!(
+        growth.fired(),
+        ["BRAKE", "LATCH"],
+        "a stop may not speed up"
+    );
 
     let mut line = Bench::running(&robot);
     line.tick(decision(Action::Brake, 0.0), |inputs| {

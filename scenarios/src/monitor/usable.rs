@@ -83,6 +83,13 @@ fn beam_invalid(scanner: &Scanner, range: f32) -> bool {
     }
 }
 
+/// Whether something stands nearer than the least range, nobody knows where.
+pub(super) fn too_near(scanner: &Scanner, range: f32) -> bool {
+    let rep117 = scanner.encoding == Encoding::Rep117;
+    (rep117 && (range == f32::NEG_INFINITY || range == 0.0))
+        || (range > 0.0 && f64::from(range) < scanner.range_min_m - 1e-6)
+}
+
 /// Distance of a return: none for no-return and invalid beams, the least range if too near.
 pub(super) fn returned(scanner: &Scanner, range: f32) -> Option<f64> {
     if scanner.encoding == Encoding::Rep117 && (range == f32::NEG_INFINITY || range == 0.0) {

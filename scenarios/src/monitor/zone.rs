@@ -3,7 +3,7 @@
 use haltline::decision::Action;
 use haltline_robots::{Robot, Scanner};
 
-use super::usable::returned;
+use super::usable::{returned, too_near};
 use super::{Ledger, Tick};
 use crate::math::{Pose, microseconds};
 use crate::sensor::{RawScan, beam_time_us};
@@ -23,15 +23,21 @@ impl Zone {
     }
 
     pub(super) fn tick(&mut self, robot: &Robot, tick: &Tick<'_>, fresh_scans: &[usize]) {
-        let found = fresh_scans
+        let scans = fresh_scans
             .iter()
-            .filter_map(|index| tick.inputs.scans.get(*index))
-            .find_map(|scan| inside(robot, tick, scan));
-        self.ledger.judged(found.is_some());
-        let Some([x, y]) = found else {
+            .filter_map(|index| tick.inputs.scans.get(*index));
+        let nearest = scans
+            .filter_map(|scan| nearest(robot, tick, scan))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let inside = nearest.filter(|(distance, _)| *distance < 0.0);
+        self.ledger.judged(inside.is_some());
+        let (Some((distance, [x, y])), true) =
+            (nearest, tick.decision.action < Action::ProtectiveStop)
+        else {
             return;
         };
-        if tick.decision.action < Action::ProtectiveStop {
+        self.ledger.near(distance);
+        if inside.is_some() && tick.decision.action < Action::ProtectiveStop {
             self.ledger.violated(
                 tick.t_s,
                 format!(
@@ -43,28 +49,37 @@ impl Zone {
     }
 }
 
-/// First return of a scan inside the zone, in the body frame of now.
-fn inside(robot: &Robot, tick: &Tick<'_>, scan: &RawScan) -> Option<[f64; 2]> {
+/// The return of a scan that lies farthest inside the zone or nearest to it: its signed distance and its place in
+/// the body frame of now.
+fn nearest(robot: &Robot, tick: &Tick<'_>, scan: &RawScan) -> Option<(f64, [f64; 2])> {
     let scanner = robot.values.scanners.get(scan.scanner)?;
     let sweep_us = microseconds(scanner.scan_time_s);
     let count = scan.ranges_m.len();
-    scan.ranges_m.iter().enumerate().find_map(|(beam, range)| {
-        let range = returned(scanner, *range)?;
-        // Far returns are not worth the sines.
-        if range > robot.values.footprint.radius_m() + 2.0 {
-            return None;
-        }
-        let heading = scanner.first_beam_rad() + scanner.increment_rad() * beam as f64;
-        let mount = Pose::new(scanner.x_m, scanner.y_m, heading);
-        let then = mount.apply([range, 0.0]);
-        if masked(scanner, then) {
-            return None;
-        }
-        let seen_from = (tick.pose_at)(beam_time_us(scan.begun_us, sweep_us, beam, count));
-        let now = tick.pose.apply_inverse(seen_from.apply(then));
-        in_zone(robot, then).then_some(())?;
-        in_zone(robot, now).then_some(now)
-    })
+    let places = scan
+        .ranges_m
+        .iter()
+        .enumerate()
+        .filter_map(|(beam, reported)| {
+            let range = returned(scanner, *reported)?;
+            // Far returns are not worth the sines.
+            if range > robot.values.footprint.radius_m() + 2.0 {
+                return None;
+            }
+            let heading = scanner.first_beam_rad() + scanner.increment_rad() * beam as f64;
+            let mount = Pose::new(scanner.x_m, scanner.y_m, heading);
+            let then = mount.apply([range, 0.0]);
+            if too_near(scanner, *reported) {
+                // It may stand up to the scanner itself.
+                return Some((-BORDER_M, then));
+            }
+            if masked(scanner, then) {
+                return None;
+            }
+            let seen_from = (tick.pose_at)(beam_time_us(scan.begun_us, sweep_us, beam, count));
+            let now = tick.pose.apply_inverse(seen_from.apply(then));
+            Some((to_zone(robot, then).max(to_zone(robot, now)), now))
+        });
+    places.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 fn masked(scanner: &Scanner, [x, y]: [f64; 2]) -> bool {
@@ -74,10 +89,14 @@ fn masked(scanner: &Scanner, [x, y]: [f64; 2]) -> bool {
         .any(|m| x >= m.x_min_m && x <= m.x_max_m && y >= m.y_min_m && y <= m.y_max_m)
 }
 
-fn in_zone(robot: &Robot, [x, y]: [f64; 2]) -> bool {
+/// Signed distance of a point to the zone without its border, metres; negative inside.
+fn to_zone(robot: &Robot, [x, y]: [f64; 2]) -> f64 {
     let (outline, zone) = (&robot.values.footprint, &robot.values.zone);
-    x < outline.front_m + zone.front_m - BORDER_M
-        && x > -outline.rear_m - zone.side_m + BORDER_M
-        && y < outline.left_m + zone.side_m - BORDER_M
-        && y > -outline.right_m - zone.side_m + BORDER_M
+    let beyond = [
+        x - (outline.front_m + zone.front_m),
+        -outline.rear_m - zone.side_m - x,
+        y - (outline.left_m + zone.side_m),
+        -outline.right_m - zone.side_m - y,
+    ];
+    beyond.into_iter().fold(f64::NEG_INFINITY, f64::max) + BORDER_M
 }

@@ -93,6 +93,7 @@ fn sweeps_come_at_their_rate_and_not_before_their_last_beam() {
     let robot = Robot::embedded("seekur_jr").expect("the shipped robot is good");
     let model = exact(15_000);
     let mut sensors = Sensors {
+        turned: Vec::new(),
         scanners: vec![(robot.values.scanners[0].clone(), model)],
         next_us: vec![0],
         noise: Noise::new(1, Stream::Sensor),
@@ -113,4 +114,28 @@ fn formats_write_nothing_in_their_own_way() {
     assert!(no_return(Encoding::ZeroIsNone).abs() < f32::MIN_POSITIVE);
     assert!(lost_range(Encoding::Rep117).is_nan());
     assert!(lost_range(Encoding::ZeroIsInvalid).abs() < f32::MIN_POSITIVE);
+}
+
+#[test]
+fn a_knocked_scanner_looks_elsewhere_for_a_while() {
+    use crate::testing::{ROOM, robot, scenario};
+    let knock =
+        "\n[[fault]]\nkind = \"scan_rotated\"\nfrom_s = 0.1\nuntil_s = 0.2\nturn_deg = 60.0\n";
+    let scene = scenario(&format!(
+        "{ROOM}\n[sensor]\nnoise_sigma_m = 0.0\nbias_m = 0.0\n{knock}"
+    ));
+    let mut sensors = Sensors::new(&robot(), &scene, Noise::new(1, Stream::Sensor));
+    let still = |_| Pose::default();
+    let scans = sensors.sweep(400_000, &wall_ahead(), &still);
+    // The wall is 5 m ahead of the scanner: 10 m at 60 degrees.
+    for (_, scan) in scans {
+        let knocked = (100_000..200_000).contains(&scan.begun_us);
+        let expected = if knocked { 10.0 } else { 5.0 };
+        assert!(
+            (f64::from(scan.ranges_m[270]) - expected).abs() < 0.01,
+            "{} us: {}",
+            scan.begun_us,
+            scan.ranges_m[270]
+        );
+    }
 }

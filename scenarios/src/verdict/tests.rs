@@ -20,6 +20,7 @@ fn parked() -> RunResult {
         decision.reason = "GuardBlocked".to_owned();
     }
     result.monitors = vec![MonitorReport {
+        margin: None,
         id: "CLAIM".to_owned(),
         checked: 100,
         engaged: 10,
