@@ -1,0 +1,4 @@
+//! Any bytes against the property `sena` of `haltline_fuzz_properties`.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| haltline_fuzz_properties::fuzz("sena", bytes));
