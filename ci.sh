@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Everything that must hold before a change lands, in one command; the hosted run calls this, too.
 # Usage: ./ci.sh            all steps, in order
-#        ./ci.sh STEP...    only these: setup fmt clippy doc test proofs timing certify
+#        ./ci.sh STEP...    only these: setup fmt clippy doc test fuzz proofs faults attack timing certify,
+#                           and on demand: coverage mutants
 set -euo pipefail
 cd "$(dirname "$0")"
 export CARGO_TERM_COLOR="${CARGO_TERM_COLOR:-auto}"
@@ -11,6 +12,9 @@ step_setup() { # Debian packages the later steps need
     command -v cc >/dev/null || missing+=(gcc libc6-dev)
     command -v nm >/dev/null || missing+=(binutils)
     command -v valgrind >/dev/null || missing+=(valgrind)
+    command -v c++ >/dev/null || missing+=(g++)
+    command -v zip >/dev/null || missing+=(zip)
+    command -v unzip >/dev/null || missing+=(unzip)
     if ((${#missing[@]})); then
         local sudo=""
         [ "$(id -u)" -eq 0 ] || sudo=sudo
@@ -19,16 +23,20 @@ step_setup() { # Debian packages the later steps need
     fi
     cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
     cargo clippy --version >/dev/null 2>&1 || rustup component add clippy
+    cargo fuzz --version >/dev/null 2>&1 || cargo install --quiet --locked cargo-fuzz --version 0.13.1
 }
 
 step_fmt() {
     cargo fmt --all --check
     cargo fmt --manifest-path verification/image/Cargo.toml --check
     cargo fmt --manifest-path verification/proofs/Cargo.toml --check
+    cargo fmt --manifest-path fuzz/Cargo.toml --check
 }
 
 step_clippy() {
     cargo clippy --workspace --all-targets --quiet -- -D warnings
+    # Wire formats and adapters without std.
+    cargo clippy -p haltline-drives --no-default-features --quiet -- -D warnings
 }
 
 step_doc() {
@@ -41,12 +49,52 @@ step_test() {
     cargo test --workspace --release
 }
 
-step_proofs() { # no proof is run again here; the ledger must match the sources
-    cargo run --release --quiet -p haltline-verification -- prove --check
+step_fuzz() { # the fuzzing service's build script for real, then every corpus and a short search on every target
+    local out target seeds cases runs
+    out=$PWD/target/fuzz-out
+    rm -rf "$out"
+    mkdir -p "$out"
+    OUT=$out .clusterfuzzlite/build.sh
+    while read -r target runs; do
+        seeds=$out/seeds/$target
+        mkdir -p "$seeds"
+        unzip -q "$out/${target}_seed_corpus.zip" -d "$seeds"
+        cases=$(find "$seeds" -type f | wc -l)
+        # A number of runs, no time: the same search on every machine. What the engine keeps goes into the first folder.
+        "$out/$target" -seed=1 -runs=$((cases + runs)) -max_len=2048 "$seeds" >"$out/$target.log" 2>&1 \
+            || { cat "$out/$target.log"; return 1; }
+        echo "$target: $cases cases and a search: $(grep -h '^Done' "$out/$target.log" | tail -1)"
+    done < <(cargo run --quiet --release -p haltline-fuzz-properties --bin corpus -- list --runs)
+}
+
+step_proofs() { # runs every proof again; says so if a tool cannot be had and only the ledger was compared
+    cargo run --release --quiet -p haltline-verification -- prove --again
+}
+
+step_faults() { # an eighth of the seeded faults; which one follows from the commit, so that a rerun is the same
+    local commit shard
+    commit=$(git rev-parse HEAD)
+    shard=$((16#${commit:0:7} % 8 + 1))
+    echo "commit ${commit:0:7}: shard $shard of 8; all: cargo run --release -p haltline-verification -- faults"
+    cargo run --release --quiet -p haltline-verification -- faults --shard "$shard/8"
+}
+
+step_attack() { # fixed numbers of runs: the same on every machine
+    # Told less than the truth, the attacker must find it; told the truth, nothing.
+    cargo test --release --quiet -p haltline-attack --test finds -- --include-ignored --nocapture --test-threads 1
+    cargo run --release --quiet -- attack robots/seekur_jr.toml --break --strategy random --budget 1200 --out target/attack
 }
 
 step_timing() { # instruction counts; the machine's load does not matter
     cargo run --release --quiet -p haltline-verification -- timing
+}
+
+step_coverage() { # not among the steps of a change: writes verification/measured.json
+    cargo run --release --quiet -p haltline-verification -- coverage
+}
+
+step_mutants() { # not among the steps of a change: hours for all; writes verification/measured.json
+    cargo run --release --quiet -p haltline-verification -- mutants
 }
 
 step_certify() { # the main job, as a user runs it; twice, and the certificate must not change
@@ -59,10 +107,11 @@ step_certify() { # the main job, as a user runs it; twice, and the certificate m
 }
 
 steps=("$@")
-[ ${#steps[@]} -gt 0 ] || steps=(setup fmt clippy doc test proofs timing certify)
+[ ${#steps[@]} -gt 0 ] || steps=(setup fmt clippy doc test fuzz proofs faults attack timing certify)
 for step in "${steps[@]}"; do
     if ! declare -F "step_$step" >/dev/null; then
-        echo "ci.sh: no step '$step'; the steps are: setup fmt clippy doc test proofs timing certify" >&2
+        echo "ci.sh: no step '$step'; the steps are: setup fmt clippy doc test fuzz proofs faults attack timing certify;" \
+            "on demand: coverage mutants" >&2
         exit 2
     fi
     started=$SECONDS

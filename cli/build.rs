@@ -3,24 +3,22 @@
 //! The certificate must name the kernel that ran, not the one that lies on the disk later, so the
 //! hashes are taken when the command is built. Nothing outside the checkout is read.
 
+use haltline_verification::measure;
+use haltline_verification::prove::command::standings;
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Folders whose Rust files may name requirements, relative to the root of the checkout.
-const NAMING: [&str; 7] = [
+/// Folders whose Rust files cite requirements, relative to the root of the checkout.
+const CITING: [&str; 8] = [
     "kernel/src",
     "kernel/tests",
+    "robots/src",
+    "drives/src",
+    "drives/tests",
     "spec/tests",
-    "scenarios/src/monitor",
-    "scenarios/tests",
-    "drives",
-    "verification",
-];
-
-/// Families of requirements.
-const FAMILIES: [&str; 10] = [
-    "GUARD", "BRAKE", "LIMIT", "ZONE", "FRESH", "SILENT", "LATCH", "INPUT", "MEMORY", "TIME",
+    "cli/src",
+    "cli/tests",
 ];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -29,6 +27,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     write_kernel_hashes(&root, &mut out)?;
     write_citations(&root, &mut out)?;
     write_scenarios(&root, &mut out)?;
+    write_proofs(&root, &mut out)?;
+    write_measured(&root, &mut out)?;
     let target = PathBuf::from(std::env::var("OUT_DIR")?).join("provenance.rs");
     std::fs::write(target, out)?;
     Ok(())
@@ -52,52 +52,58 @@ fn write_kernel_hashes(root: &Path, out: &mut String) -> Result<(), Box<dyn std:
     Ok(())
 }
 
-/// Every place in code or tests that names a requirement; `GUARD-01..05` names five.
+/// Every line below a citation (`//= spec/FILE#ID`): of code, or of a test if it says so. Harnesses
+/// are left to the ledger, which knows whether they hold.
 fn write_citations(root: &Path, out: &mut String) -> Result<(), Box<dyn std::error::Error>> {
     let mut files = Vec::new();
-    for folder in NAMING {
+    for folder in CITING {
         list(root, folder, &mut files)?;
     }
     files.sort();
     files.dedup();
     out.push_str("pub const CITATIONS: &[(&str, &str, usize, bool)] = &[\n");
     for file in files.iter().filter(|file| file.ends_with(".rs")) {
-        let is_test = file.contains("/tests");
         let text = std::fs::read_to_string(root.join(file))?;
-        for (index, line) in text.lines().enumerate() {
-            for id in ids(&line.to_uppercase()) {
-                writeln!(out, "    ({id:?}, {file:?}, {}, {is_test}),", index + 1)?;
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        for (index, line) in lines.iter().enumerate() {
+            let Some((_, id)) = line
+                .strip_prefix("//= spec/")
+                .and_then(|target| target.split_once('#'))
+            else {
+                continue;
+            };
+            let kind = lines.get(index + 1).copied().unwrap_or_default();
+            if kind == "//= type=proof" {
+                continue;
             }
+            let is_comment = |line: &&&str| line.starts_with("//") || line.is_empty();
+            let below = lines.iter().skip(index).take_while(is_comment).count();
+            let (id, at) = (id.to_uppercase(), index + below + 1);
+            let is_test = kind == "//= type=test";
+            writeln!(out, "    ({id:?}, {file:?}, {at}, {is_test}),")?;
         }
     }
     out.push_str("];\n");
     Ok(())
 }
 
-/// The requirement ids in a line of upper-case text.
-fn ids(line: &str) -> Vec<String> {
-    let mut found: Vec<String> = Vec::new();
-    for family in FAMILIES {
-        for (at, _) in line.match_indices(family) {
-            let after = &line.as_bytes()[at + family.len()..];
-            let number = |bytes: &[u8]| match bytes {
-                [a, b, ..] if a.is_ascii_digit() && b.is_ascii_digit() => {
-                    Some((a - b'0') * 10 + (b - b'0'))
-                }
-                _ => None,
-            };
-            let Some(first) = after.strip_prefix(b"-").and_then(number) else {
-                continue;
-            };
-            let last = after
-                .get(3..)
-                .and_then(|rest| number(rest.strip_prefix(b"..")?));
-            found.extend((first..=last.unwrap_or(first)).map(|n| format!("{family}-{n:02}")));
-        }
-    }
-    found.sort();
-    found.dedup();
-    found
+/// How the proof ledger stands against the sources that are compiled now.
+fn write_proofs(root: &Path, out: &mut String) -> Result<(), Box<dyn std::error::Error>> {
+    println!("cargo::rerun-if-changed=../verification/ledger.json");
+    println!("cargo::rerun-if-changed=../spec/lemmas");
+    let stood = standings(root).map_err(|error| error.to_string());
+    let text = serde_json::to_string(&stood)?;
+    writeln!(out, "pub const PROOF_STANDINGS: &str = {text:?};")?;
+    Ok(())
+}
+
+/// How the figures of coverage and mutants stand against the sources that are compiled now.
+fn write_measured(root: &Path, out: &mut String) -> Result<(), Box<dyn std::error::Error>> {
+    println!("cargo::rerun-if-changed=../{}", measure::FILE);
+    let stood = measure::standing(root).map_err(|error| error.to_string())?;
+    let text = serde_json::to_string(&stood)?;
+    writeln!(out, "pub const MEASURED: &str = {text:?};")?;
+    Ok(())
 }
 
 /// The shipped scenarios, so that the command works outside a checkout.

@@ -1,6 +1,7 @@
 //! The command line, and the help that teaches it.
 
 use clap::{Parser, Subcommand, ValueEnum};
+use haltline_attack::campaign::Budget;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -11,6 +12,8 @@ Examples:
   haltline run scenarios/files/thin_pole.toml   drive one scenario and look at the picture
   haltline run FILE --naked                     the same without the guard: it should touch
   haltline barn DIR                             drive all BARN worlds of a folder; table and summary
+  haltline attack my_robot.toml --budget 5m     search for a scenario that breaks the claim
+  haltline emulate seekur-jr                    an emulated robot to connect to; see drive --help
   haltline explain GUARD-01                     read a requirement and what stands behind it
 
 Exit codes:
@@ -39,6 +42,7 @@ Writes to the output folder:
   report.html       self-contained; every run drawn, every claim linked to its evidence
   certificate.json  the same for machines; schema in cli/CERTIFICATE.md
   junit.xml         for CI servers
+  claims.sarif      failed claims, for code scanning
   timing.json       wall times; the only file that differs between two runs
 
 Example:
@@ -86,6 +90,77 @@ Examples:
   haltline barn ../shared/data/barn
   haltline barn ../shared/data/barn --sensor-bound 0.04 --out out/barn")]
     Barn(BarnArgs),
+    /// Search for a scenario in which the guarded robot breaks its claim; shrink what is found.
+    #[command(
+        args_conflicts_with_subcommands = true,
+        after_help = "\
+Composes worlds, motions, faults and a true robot at the edge of what its file assumes, runs them in
+the simulator, and lets an optimiser (CMA-ES) bring each nearer to a violation. Faults come from the
+catalogue in scenarios/FAULTS.md. Robustness is the signed distance to a violation: for CLAIM the least
+clearance while moving (metres; after a contact minus its speed), for ZONE the distance of the nearest
+return from the critical zone, for FRESH and SILENT the time that was left, for LIMIT the speed. LATCH
+and INPUT say yes or no. Six searches of eight aim at CLAIM, the others at ZONE and FRESH. Every
+tenth scenario is also run without the guard, to say how often the guard had something to do.
+
+What is found is shrunk and written as counterexample_N.toml; `haltline run` replays it to the bit.
+Its head says whether a claim is violated (a bug) or which assumption is broken, and by how much.
+nearest.toml is the scenario that came nearest. attack.json is the record, and what `merge` joins:
+I/N makes every N-th search beginning with the I-th, so shards never overlap and may run anywhere.
+
+With --break each scenario breaks one assumption, and the least break that led to a contact is kept
+for each assumption. With --told the kernel alone is told other values than the truth: a false twin.
+
+Exit code: 0 no claim violated, 1 violated, 2 the input is unusable.
+
+Examples:
+  haltline attack robots/seekur_jr.toml --budget 2000
+  haltline attack my_robot.toml --budget 30m --shard 2/8 --out out/shard_2
+  haltline attack merge out/shard_* --out out/attack
+  haltline attack robots/seekur_jr.toml --break --budget 5m
+  haltline attack robots/seekur_jr.toml --told timing.actuation_latency_s=0.0"
+    )]
+    Attack(AttackArgs),
+    /// Drive a robot, or an emulated one, with the kernel in between.
+    #[command(after_help = "\
+The kernel drives to a goal itself, or shields it from commands that somebody writes to standard
+input: a line `V TURN` each (m/s and rad/s; a steered robot: m/s and 1/m). Commands that are older
+than the robot file allows stop the robot; the end of the input ends the drive.
+
+Starting the command is the operator's first reset: look around the robot before. After a latched
+stop, or when the motors went off, the line `reset` on standard input or `kill -USR1` of this process
+resets again. Ctrl-C, kill, a closed terminal, a panic and a lost deadline all end in a ramp to rest
+on the wire; SIGKILL leaves it to the robot's own watchdog.
+
+Only emulators were driven so far (CAVEATS.md). Exit code 1: the robot could not be told to stop;
+3: no robot of this kind answered.
+
+Examples, with `haltline emulate seekur-jr --port tcp:127.0.0.1:8101` in another terminal:
+  haltline drive robots/seekur_jr.toml --port tcp:127.0.0.1:8101 --scan-from 127.0.0.1:PORT --goal 4,0
+  my_planner | haltline drive robots/seekur_jr.toml --port /dev/ttyUSB0 --scan-from 192.168.0.1:2111 --shield")]
+    Drive(DriveArgs),
+    /// Emulate a robot with its scanner: a pseudo-terminal or socket that answers as the real one.
+    #[command(after_help = "\
+The robot stands in a corridor with an obstacle, or with --hall in an empty hall. Its scanner
+answers on a port of its own (SICK LMS1xx, CoLa ASCII). Both addresses are the first line.
+
+Examples:
+  haltline emulate seekur-jr
+  haltline emulate pses-car --port tcp:127.0.0.1:5555
+  haltline emulate seekur-jr --hall 12")]
+    Emulate(EmulateArgs),
+    /// Measure what a robot file assumes: braking, latency, tracking, what silence does.
+    #[command(after_help = "\
+NOTHING GUARDS THESE MOTIONS. Put the robot on a free floor and keep a hand on the stop button.
+Five times: straight on and brake, turn on the spot and stop (not a steered robot), straight on and
+fall silent until the robot has stopped by itself. From each run: the time until the set point shows,
+the decelerations, the dead-man time, the deceleration of the silence. Each figure is printed as the
+line to paste: a bound that 95 % of runs keep with 95 % confidence, its sample, and whether the file's
+value holds. Exit code 1: some value of the file does not hold.
+
+Examples:
+  haltline measure robots/seekur_jr.toml --port /dev/ttyUSB0 --log bench.csv --i-have-cleared-the-floor
+  haltline measure robots/seekur_jr.toml --port /dev/ttyUSB0 --turn-only --i-have-cleared-the-floor")]
+    Measure(MeasureArgs),
     /// Print a requirement: its text, its assumptions, its evidence.
     #[command(
         after_help = "Examples:\n  haltline explain FRESH-01\n  haltline explain            list all"
@@ -110,6 +185,209 @@ pub struct CertifyArgs {
     /// Folder to write to.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
+    /// Run every proof again, instead of trusting the ledger for these sources; takes minutes,
+    /// needs the checkout, and installs what it lacks from Debian.
+    #[arg(long)]
+    pub prove: bool,
+}
+
+/// Arguments of `attack`.
+#[derive(Debug, clap::Args)]
+pub struct AttackArgs {
+    /// Join shards instead of searching.
+    #[command(subcommand)]
+    pub merge: Option<AttackCommand>,
+    /// Robot file.
+    #[arg(required = true)]
+    pub robot: Option<PathBuf>,
+    /// How much to try: a number of runs (rounded up to whole searches), or a time such as 90s, 5m, 2h.
+    #[arg(long, value_name = "N|TIME", default_value = "1200", value_parser = budget)]
+    pub budget: Budget,
+    /// How scenarios are chosen.
+    #[arg(long, value_enum, default_value_t = AttackStrategy::Search)]
+    pub strategy: AttackStrategy,
+    /// Seed of everything; the same seed makes the same searches on every machine.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// This process makes every N-th search, beginning with the I-th: for campaigns on many machines.
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = shard)]
+    pub shard: [u64; 2],
+    /// Break an assumption in each scenario, and keep the least break that leads to a contact.
+    #[arg(long = "break")]
+    pub breaking: bool,
+    /// Go on after a claim was violated.
+    #[arg(long)]
+    pub keep_going: bool,
+    /// Another value for a key of the robot file, such as limits.braking_mps2=0.4; may be repeated.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<(String, String)>,
+    /// What the kernel alone is told instead of the truth, as --set; may be repeated.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub told: Vec<(String, String)>,
+    /// Folder to write attack.json and counterexamples to.
+    #[arg(long, value_name = "DIR", default_value = "out/attack")]
+    pub out: PathBuf,
+}
+
+/// What else `attack` does.
+#[derive(Debug, Subcommand)]
+pub enum AttackCommand {
+    /// Join the folders of shards into one record.
+    Merge {
+        /// Folders that `haltline attack --shard` wrote.
+        #[arg(required = true)]
+        folders: Vec<PathBuf>,
+        /// Folder to write to.
+        #[arg(long, value_name = "DIR", default_value = "out/attack")]
+        out: PathBuf,
+    },
+}
+
+/// How an attack chooses scenarios.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum AttackStrategy {
+    /// Each at random.
+    Random,
+    /// Structures at random, numbers by an optimiser.
+    Search,
+}
+
+/// A number of runs, or a time with its unit.
+fn budget(text: &str) -> Result<Budget, String> {
+    let wrong =
+        || "write a number of runs such as 2000, or a time such as 90s, 5m or 2h".to_owned();
+    let units = [("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+    let timed = units
+        .iter()
+        .find_map(|(unit, s)| Some((text.strip_suffix(unit)?, s)));
+    match timed {
+        None => text.parse().ok().filter(|runs| *runs > 0).map(Budget::Runs),
+        Some((number, s)) => number
+            .parse::<f64>()
+            .ok()
+            .filter(|value| *value > 0.0 && value.is_finite())
+            .map(|value| Budget::Seconds(value * s)),
+    }
+    .ok_or_else(wrong)
+}
+
+/// `I/N` as the index from 0 and the count.
+fn shard(text: &str) -> Result<[u64; 2], String> {
+    let parts = text
+        .split_once('/')
+        .and_then(|(index, count)| Some([index.parse::<u64>().ok()?, count.parse::<u64>().ok()?]));
+    match parts {
+        Some([index, count]) if (1..=count).contains(&index) => Ok([index - 1, count]),
+        _ => Err("write I/N with I from 1 to N, such as 2/8".to_owned()),
+    }
+}
+
+/// `KEY=VALUE`.
+fn setting(text: &str) -> Result<(String, String), String> {
+    text.split_once('=')
+        .map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned()))
+        .ok_or_else(|| "write KEY=VALUE, such as timing.actuation_latency_s=0.0".to_owned())
+}
+
+/// A length or a time that is one.
+fn above_zero(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok();
+    value
+        .filter(|value: &f64| *value > 0.0 && value.is_finite())
+        .ok_or_else(|| "write a number above 0, such as 12".to_owned())
+}
+
+/// A skid factor: above 0.05, at most 1.
+fn skid(text: &str) -> Result<f64, String> {
+    let factor = text.parse().ok();
+    factor
+        .filter(|factor| *factor > 0.05 && *factor <= 1.0)
+        .ok_or_else(|| "write a number above 0.05 and at most 1, such as 0.73".to_owned())
+}
+
+/// Arguments of `drive`.
+#[derive(Debug, clap::Args)]
+#[command(group = clap::ArgGroup::new("mode").required(true).args(["goal", "shield"]))]
+pub struct DriveArgs {
+    /// Robot file.
+    pub robot: PathBuf,
+    /// Serial line (/dev/ttyUSB0) or tcp:HOST:PORT.
+    #[arg(long, value_name = "PORT")]
+    pub port: String,
+    /// HOST:PORT of the scanner (CoLa ASCII).
+    #[arg(long, value_name = "ADDR")]
+    pub scan_from: String,
+    /// Speed of the serial line, baud [default: 38400 for a Seekur Jr, 921600 for a model car].
+    #[arg(long, value_name = "BAUD")]
+    pub baud: Option<u32>,
+    /// Skid factor: how far the robot turns for each turn that its wheels tell (see `haltline measure`).
+    #[arg(long, value_name = "XI", value_parser = skid)]
+    pub skid: Option<f64>,
+    /// Drive to X,Y (metres ahead and to the left of where it stands now) and take the heading DEG there.
+    #[arg(long, value_name = "X,Y[,DEG]", allow_hyphen_values = true)]
+    pub goal: Option<String>,
+    /// Pass on commands from standard input as far as the guard allows.
+    #[arg(long)]
+    pub shield: bool,
+    /// Adapter, where the robot's name does not tell it: seekur-jr or pses-car.
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
+    /// End after so many seconds.
+    #[arg(long = "for", value_name = "S", allow_negative_numbers = true, value_parser = above_zero)]
+    pub for_s: Option<f64>,
+    /// Write scans and odometry to a file that `haltline replay --format sena` reads.
+    #[arg(long, value_name = "FILE")]
+    pub trace: Option<PathBuf>,
+}
+
+/// Arguments of `emulate`.
+#[derive(Debug, clap::Args)]
+pub struct EmulateArgs {
+    /// seekur-jr or pses-car.
+    pub robot: String,
+    /// `pty`, or tcp:HOST:PORT (port 0: any).
+    #[arg(long, value_name = "PORT", default_value = "pty")]
+    pub port: String,
+    /// Robot file with other values [default: the one that comes with the program].
+    #[arg(long, value_name = "FILE")]
+    pub file: Option<PathBuf>,
+    /// Skid factor: how far the robot turns for each turn that its wheels tell (see `haltline measure`).
+    #[arg(long, value_name = "XI", value_parser = skid)]
+    pub skid: Option<f64>,
+    /// An empty hall with a wall so many metres ahead, instead of the corridor with an obstacle.
+    #[arg(long = "hall", value_name = "AHEAD_M", allow_negative_numbers = true, value_parser = above_zero)]
+    pub hall_m: Option<f64>,
+}
+
+/// Arguments of `measure`.
+#[derive(Debug, clap::Args)]
+pub struct MeasureArgs {
+    /// Robot file.
+    pub robot: PathBuf,
+    /// Serial line (/dev/ttyUSB0) or tcp:HOST:PORT.
+    #[arg(long, value_name = "PORT")]
+    pub port: String,
+    /// Adapter, where the robot's name does not tell it: seekur-jr or pses-car.
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
+    /// Speed of the serial line, baud [default: 38400 for a Seekur Jr, 921600 for a model car].
+    #[arg(long, value_name = "BAUD")]
+    pub baud: Option<u32>,
+    /// Skid factor: how far the robot turns for each turn that its wheels tell (see `haltline measure`).
+    #[arg(long, value_name = "XI", value_parser = skid)]
+    pub skid: Option<f64>,
+    /// Only turn on the spot, twice to each side, and calibrate the skid factor from the true turn.
+    #[arg(long)]
+    pub turn_only: bool,
+    /// Write every feedback of the drive to this file (CSV).
+    #[arg(long, value_name = "FILE")]
+    pub log: Option<PathBuf>,
+    /// Speed to measure at, m/s.
+    #[arg(long = "speed", value_name = "MPS", default_value_t = 0.5)]
+    pub speed_mps: f64,
+    /// The floor is free and somebody holds the stop button.
+    #[arg(long)]
+    pub i_have_cleared_the_floor: bool,
 }
 
 /// Arguments of `run`.

@@ -5,7 +5,10 @@
 
 use crate::claims::{Claim, Replay, Status};
 use crate::failure::Exit;
+use crate::measured::{self, Standing};
+use crate::proofs::Proofs;
 use crate::provenance::{self, FileHash};
+use haltline_attack::hostile::Hostile;
 use haltline_robots::contract::Contract;
 use haltline_robots::{Change, Robot};
 use haltline_scenarios::navigation::NavigationBrief;
@@ -37,6 +40,12 @@ pub struct Certificate {
     pub claims: Vec<Claim>,
     /// Whether the robot's limits are consistent, term by term.
     pub contract: Contract,
+    /// The checks of the proof ledger.
+    pub proofs: Proofs,
+    /// Seeded hostile runs.
+    pub adversary: Hostile,
+    /// Coverage and mutants of the safety core; no claim rests on them.
+    pub measured: Standing,
     /// Assumptions the claims rest on.
     pub assumptions: Vec<AssumptionRecord>,
     /// Sweeps judged as a whole.
@@ -175,6 +184,10 @@ pub struct Parts<'a> {
     pub claims: Vec<Claim>,
     /// How to show a run again.
     pub replay: &'a Replay,
+    /// The proofs.
+    pub proofs: Proofs,
+    /// The hostile runs.
+    pub adversary: Hostile,
 }
 
 impl Certificate {
@@ -198,6 +211,9 @@ impl Certificate {
             scenario_files: parts.scenario_files,
             claims: parts.claims,
             contract: parts.contract,
+            proofs: parts.proofs,
+            adversary: parts.adversary,
+            measured: measured::standing(),
             assumptions: assumption_records(parts.suite),
             sweeps: parts.suite.groups.clone(),
             cases: parts
@@ -296,7 +312,7 @@ mod tests {
 
     #[test]
     fn a_failure_outweighs_a_gap() {
-        let mut claims = not_claimed();
+        let mut claims = [not_claimed(), not_claimed()].concat();
         claims[0].status = Status::Holds;
         assert_eq!(exit(&claims), Exit::Holds);
         claims[1].status = Status::NotCheckable;

@@ -5,17 +5,20 @@ use crate::certificate::{Certificate, Parts};
 use crate::claims::{self, Claim, Counterexample, Evidence, Replay, Status};
 use crate::failure::{Exit, Failure, prepare, write_file};
 use crate::library::{self, Library};
+use crate::measured;
+use crate::proofs::Proofs;
 use crate::provenance::FileHash;
 use crate::report::page;
 use crate::timing::{self, Timing};
-use crate::{junit, terminal};
+use crate::{junit, sarif, terminal};
+use haltline_attack::hostile::{Hostile, hostile};
 use haltline_robots::Robot;
 use haltline_robots::contract::{Contract, Finding};
 use haltline_scenarios::batch::{Case, equip, run_suite};
 use haltline_scenarios::result::SuiteResult;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The robot that plain `haltline` certifies.
 const DEFAULT_ROBOT: &str = "seekur_jr";
@@ -26,7 +29,7 @@ const DEFAULT_ROBOT: &str = "seekur_jr";
 /// As [`certify`].
 pub fn default_robot() -> Result<Exit, Failure> {
     let robot = library::robot_by_name(DEFAULT_ROBOT)?;
-    certify_robot(&robot, None, Path::new("out"))
+    certify_robot(&robot, None, Path::new("out"), false)
 }
 
 /// Certifies a robot.
@@ -35,16 +38,28 @@ pub fn default_robot() -> Result<Exit, Failure> {
 /// A file is unusable, or the output cannot be written.
 pub fn certify(args: &CertifyArgs) -> Result<Exit, Failure> {
     let robot = library::robot(&args.robot)?;
-    certify_robot(&robot, args.scenarios.as_deref(), &args.out)
+    certify_robot(&robot, args.scenarios.as_deref(), &args.out, args.prove)
 }
 
-fn certify_robot(robot: &Robot, folder: Option<&Path>, out: &Path) -> Result<Exit, Failure> {
+fn certify_robot(
+    robot: &Robot,
+    folder: Option<&Path>,
+    out: &Path,
+    prove: bool,
+) -> Result<Exit, Failure> {
     let library = library::scenarios(folder)?;
     prepare(out)?;
     let start = Instant::now();
     let contract = Contract::of(robot);
     let contract_s = start.elapsed().as_secs_f64();
     terminal::contract(robot, &contract);
+    let proofs = if prove {
+        Proofs::run_again()
+    } else {
+        Proofs::of_ledger()
+    };
+    terminal::proofs(&proofs);
+    terminal::measured(&measured::standing());
     let name = library::robot_name(robot);
     let cases = cases_for(&library, robot, &name)?;
     let start = Instant::now();
@@ -53,14 +68,24 @@ fn certify_robot(robot: &Robot, folder: Option<&Path>, out: &Path) -> Result<Exi
     if suite.cases.len() != cases.len() {
         return Err(Failure::not_checkable("some scenarios could not be run"));
     }
+    let adversary = attacked(robot)?;
     let replay = replay_of(robot, &name, &library);
     let certificate = Certificate::new(Parts {
         robot,
         scenario_files: used_files(&library, &cases),
-        claims: all_claims(robot, &contract, &suite, &replay),
+        claims: all_claims(
+            robot,
+            &contract,
+            &suite,
+            &replay,
+            &proofs,
+            (&adversary, out),
+        ),
         contract,
         suite: &suite,
         replay: &replay,
+        proofs,
+        adversary,
     });
     let timing = Timing {
         note: "wall times of one machine; they bound nothing and no claim rests on them",
@@ -69,6 +94,10 @@ fn certify_robot(robot: &Robot, folder: Option<&Path>, out: &Path) -> Result<Exi
         runs_per_s: suite.cases.len() as f64 / scenarios_s.max(1e-9),
         tick: timing::ticks(robot),
     };
+    for one in &certificate.adversary.violations {
+        let path = out.join(claims::adversary::file(one.number));
+        write_file(&path, one.text.as_bytes())?;
+    }
     let written = write_all(out, &certificate, robot, &suite, &timing)?;
     terminal::summary(&certificate, &suite, &timing, &written);
     if suite.cases.is_empty() {
@@ -128,11 +157,38 @@ fn all_claims(
     contract: &Contract,
     suite: &SuiteResult,
     replay: &Replay,
+    proofs: &Proofs,
+    (hostile, out): (&Hostile, &Path),
 ) -> Vec<Claim> {
     let mut claims = vec![contract_claim(robot, contract)];
     claims.extend(claims::from_suite(suite, replay));
+    let out = out.display().to_string();
+    claims.push(claims::adversary::from_hostile(hostile, &out));
+    claims.extend(claims::from_proofs(proofs));
+    claims.extend(adapter_claims(robot));
     claims.extend(claims::not_claimed());
+    claims::attach(&mut claims, proofs);
     claims.extend(not_covered(contract));
+    claims
+}
+
+/// Hostile runs, which take some seconds; says so on standard error, if that is a terminal.
+fn attacked(robot: &Robot) -> Result<Hostile, Failure> {
+    let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    spinner.set_message("hostile runs");
+    spinner.enable_steady_tick(Duration::from_millis(100));
+    let hostile = hostile(robot).map_err(Failure::input);
+    spinner.finish_and_clear();
+    hostile
+}
+
+/// The drive part takes some seconds; says so on standard error, if that is a terminal.
+fn adapter_claims(robot: &Robot) -> Vec<Claim> {
+    let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    spinner.set_message("drive adapter against its emulator");
+    spinner.enable_steady_tick(Duration::from_millis(100));
+    let claims = claims::drive::claims(robot);
+    spinner.finish_and_clear();
     claims
 }
 
@@ -211,6 +267,10 @@ fn write_all(
             json("certificate.json", serde_json::to_vec_pretty(certificate))?,
         ),
         ("junit.xml", junit::write(certificate)?.into_bytes()),
+        (
+            "claims.sarif",
+            json("claims.sarif", sarif::write(certificate))?,
+        ),
         (
             "timing.json",
             json("timing.json", serde_json::to_vec_pretty(timing))?,

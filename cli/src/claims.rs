@@ -3,9 +3,13 @@
 //! A claim without data is *not checkable*, never passed; a part that nobody examined is
 //! *not claimed yet*.
 
+pub mod adversary;
+pub mod drive;
+mod proofs;
 mod replay;
 mod unclaimed;
 
+pub use proofs::{attach, from_proofs};
 pub use replay::Replay;
 pub use unclaimed::not_claimed;
 
@@ -14,7 +18,9 @@ use haltline_scenarios::result::{CaseResult, Judgement, MonitorReport, Outcome, 
 use serde::Serialize;
 
 /// Requirement families with a monitor that judges every tick of every guarded run.
-pub const MONITORED: [&str; 6] = ["CLAIM", "LIMIT", "ZONE", "FRESH", "SILENT", "LATCH"];
+pub const MONITORED: [&str; 8] = [
+    "CLAIM", "BRAKE", "LIMIT", "ZONE", "FRESH", "SILENT", "LATCH", "INPUT",
+];
 
 /// How a claim stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -51,6 +57,12 @@ pub enum EvidenceKind {
     Tested,
     /// Arithmetic on the robot file.
     Computed,
+    /// Machine-checked proofs, each with the strength that the ledger states.
+    Proofs,
+    /// Every case of a stated domain was run.
+    Enumerated,
+    /// Composed hostile runs, judged like simulated ones.
+    Searched,
     /// None.
     None,
 }
@@ -68,6 +80,8 @@ pub struct Evidence {
     pub ticks_checked: u64,
     /// Number of ticks at which the requirement had something to say.
     pub ticks_engaged: u64,
+    /// Names of the checks in the proof ledger that stand behind it.
+    pub proofs: Vec<String>,
 }
 
 impl Evidence {
@@ -80,6 +94,7 @@ impl Evidence {
             runs: 0,
             ticks_checked: 0,
             ticks_engaged: 0,
+            proofs: Vec::new(),
         }
     }
 
@@ -153,10 +168,17 @@ fn statement(id: &str) -> &'static str {
             "While it moves, the robot touches no body that a valid beam or the memory showed at the \
              tick that accepted the manoeuvre, if that body has moved at most at the obstacle speed since."
         }
+        "BRAKE" => {
+            "Where no motion is accepted, the set points fall to zero along the arc, at least as fast as the sure \
+             decelerations."
+        }
         "LIMIT" => "Every accepted motion lies within the speed limits and the dynamic window.",
         "ZONE" => "A point in the critical zone starts a stop in the same tick.",
         "FRESH" => "No motion on a scan, odometry or command older than its limit.",
         "SILENT" => "Every decision carries an expiry, and silence stops the robot.",
+        "INPUT" => {
+            "A value that cannot be used stops or brakes the robot in the tick that receives it."
+        }
         "LATCH" => "An emergency stop holds until reset at rest; release replays no old command.",
         _ => "",
     }
@@ -212,6 +234,7 @@ fn monitored(id: &str, suite: &SuiteResult, replay: &Replay) -> Claim {
             runs: cases.len(),
             ticks_checked: checked,
             ticks_engaged: engaged,
+            proofs: Vec::new(),
         }
     };
     Claim {

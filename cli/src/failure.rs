@@ -78,6 +78,12 @@ impl Failure {
     }
 }
 
+impl From<haltline_logs::LogError> for Failure {
+    fn from(error: haltline_logs::LogError) -> Self {
+        Self::input(error.message)
+    }
+}
+
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)

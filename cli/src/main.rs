@@ -12,24 +12,30 @@ macro_rules! say {
 }
 
 mod args;
+mod attack;
 mod barn;
 mod carmen;
 mod certificate;
 mod certify;
 mod claims;
+mod drive;
+mod emulate;
 mod explain;
 mod failure;
 mod import;
 mod junit;
 mod library;
+mod measure;
+mod measured;
 mod mrclam;
 mod new;
 mod picture;
+mod proofs;
 mod provenance;
 mod replay;
 mod report;
 mod run;
-mod sena;
+mod sarif;
 mod terminal;
 mod timing;
 
@@ -62,6 +68,10 @@ fn dispatch(command: Option<Command>) -> Result<Exit, Failure> {
             what: Import::Barn(args),
         }) => import::barn(&args),
         Some(Command::Barn(args)) => barn::barn(&args),
+        Some(Command::Attack(args)) => attack::attack(&args),
+        Some(Command::Drive(args)) => drive::drive(&args),
+        Some(Command::Emulate(args)) => emulate::emulate(&args),
+        Some(Command::Measure(args)) => measure::measure(&args),
         None => certify::default_robot(),
     }
 }

@@ -15,7 +15,7 @@ pub struct FileHash {
     pub sha256: String,
 }
 
-/// A place in the code that names a requirement.
+/// A place in the code that cites a requirement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Citation {
     /// File from the root of the checkout.
@@ -59,7 +59,7 @@ pub fn combined(files: &[FileHash]) -> String {
     sha256(lines.as_bytes())
 }
 
-/// Where the code names a requirement (bare id).
+/// Where code and tests cite a requirement (bare id).
 #[must_use]
 pub fn citations(id: &str) -> Vec<Citation> {
     CITATIONS
@@ -73,7 +73,7 @@ pub fn citations(id: &str) -> Vec<Citation> {
         .collect()
 }
 
-/// Files of tests that name a requirement of a family.
+/// Files of tests that cite a requirement of a family.
 #[must_use]
 pub fn tests_of_family(family: &str) -> Vec<&'static str> {
     let prefix = format!("{family}-");
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_that_name_a_requirement_are_found() {
+    fn places_that_cite_a_requirement_are_found() {
         let places = citations("ZONE-01");
         assert!(places.iter().any(|place| place.is_test), "{places:?}");
         assert!(places.iter().any(|place| !place.is_test), "{places:?}");

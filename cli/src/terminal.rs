@@ -3,9 +3,12 @@
 use crate::certificate::Certificate;
 use crate::claims::{Claim, Status, first_of_each_case};
 use crate::junit;
+use crate::measured::{self, Standing};
+use crate::proofs::{self, Proofs};
 use crate::report::words;
 use crate::timing::Timing;
 use console::{StyledObject, style};
+use haltline_attack::hostile::Hostile;
 use haltline_robots::Robot;
 use haltline_robots::contract::{Contract, Finding};
 use haltline_scenarios::result::{Outcome, SuiteResult};
@@ -67,7 +70,32 @@ pub fn contract(robot: &Robot, contract: &Contract) {
             gap.decides
         );
     }
-    say!("{}not claimed yet", part("proofs"));
+}
+
+/// How many checks of the ledger hold.
+pub fn proofs(proofs: &Proofs) {
+    let holding = proofs
+        .checks
+        .iter()
+        .filter(|proof| proof.finding == proofs::Finding::Holds)
+        .count();
+    match &proofs.trouble {
+        Some(trouble) => say!("{}not checkable: {trouble}", part("proofs")),
+        None => say!(
+            "{}{holding} of {} hold ({})",
+            part("proofs"),
+            words::count(proofs.checks.len(), "check"),
+            proofs.origin
+        ),
+    }
+}
+
+/// How well tests see the safety core.
+pub fn measured(standing: &Standing) {
+    for (index, sentence) in measured::sentences(standing).iter().enumerate() {
+        let begin = part(if index == 0 { "measured" } else { "" });
+        say!("{begin}{sentence}");
+    }
 }
 
 /// What came out.
@@ -90,7 +118,7 @@ pub fn summary(
         words::count(suite.cases.len(), "run"),
         words::count(naked.count(), "naked twin")
     );
-    say!("{}not claimed yet", part("adversary"));
+    adversary(&certificate.adversary);
     match &timing.tick {
         Some(tick) => say!(
             "{}tick {:.0} us (median), {:.0} us (99 %), {:.0} us (longest of {}) on this machine; not a claim",
@@ -115,6 +143,27 @@ pub fn summary(
         say!("wrote {}", path.display());
     }
     say!("\n{}", verdict(certificate));
+}
+
+/// What attacks on the assumptions came to.
+fn adversary(hostile: &Hostile) {
+    let [runs, contacts] = hostile.broken_runs();
+    say!(
+        "{}{} within the assumptions, {} violated a claim; {runs} broke one each, {contacts} touched",
+        part("adversary"),
+        words::count(usize::try_from(hostile.kept).unwrap_or(usize::MAX), "run"),
+        hostile.violations.len()
+    );
+    let touched = hostile
+        .broken
+        .iter()
+        .filter(|(_, broken)| broken.contacts > 0);
+    let touched: Vec<String> = touched
+        .map(|(name, broken)| format!("{name} {} of {}", broken.contacts, broken.runs))
+        .collect();
+    if !touched.is_empty() {
+        say!("{:11}contacts with {}", "", touched.join(", "));
+    }
 }
 
 fn print_claims(claims: &[Claim]) {

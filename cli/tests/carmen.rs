@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{expect_exit, folder, haltline, stderr, stdout, write};
+use common::{expect_exit, first_point_m, room_range_m, stderr, stdout};
 use std::fmt::Write as _;
 
 /// Straight towards a wall in a room 6 m wide; the laser is 0.4 m before the odometry centre.
@@ -22,10 +22,8 @@ fn drive_at_wall(wall_m: f64, speed_mps: f64, beams: u32) -> String {
                 180.0 / f64::from(beams - 1)
             };
             let angle = (f64::from(beam) * step - 90.0).to_radians();
-            let ahead = (wall_m - x_m - 0.4) / angle.cos().max(1e-9);
-            let side = 3.0 / angle.sin().abs().max(1e-9);
-            let ripple = f64::from((beam + row) % 3) * 0.001;
-            let _ = write!(text, " {:.3}", ahead.min(side).min(81.9) + ripple);
+            let range = room_range_m(wall_m - x_m - 0.4, angle, (beam, row));
+            let _ = write!(text, " {range:.3}");
         }
         let time = f64::from(row) * 0.2;
         let _ = writeln!(
@@ -42,13 +40,7 @@ fn drive_at_wall(wall_m: f64, speed_mps: f64, beams: u32) -> String {
 }
 
 fn replay(name: &str, log: &str) -> (std::process::Output, std::path::PathBuf) {
-    let out = folder(name);
-    let file = write(&out, "drive.log", log);
-    let folder = out.display().to_string();
-    (
-        haltline(&["replay", "--format", "carmen", &file, "--out", &folder]),
-        out,
-    )
+    common::replay("carmen", name, "drive.log", log)
 }
 
 #[test]
@@ -59,15 +51,7 @@ fn the_guard_brakes_for_the_wall_and_the_map_is_drawn() {
             &drive_at_wall(9.0, 1.0, beams),
         );
         expect_exit(&output, 0);
-        let text = std::fs::read_to_string(out.join("replay.json")).expect("replay.json");
-        let events: serde_json::Value = serde_json::from_str(&text).expect("a list");
-        let events = events.as_array().expect("a list");
-        let braked: Vec<_> = events
-            .iter()
-            .filter(|event| event["refusal"] == "known_point")
-            .collect();
-        let first = braked.first().expect("it brakes for the wall");
-        let x_m = first["point_m"][0].as_f64().expect("a point");
+        let x_m = first_point_m(&out);
         assert!(
             (x_m - 9.0).abs() < 0.1,
             "{beams} beams: the deciding point is at x = {x_m} m"

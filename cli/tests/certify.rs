@@ -6,10 +6,11 @@
 mod common;
 
 use common::{WALL_AHEAD, expect_exit, folder, haltline, root, stderr, stdout, write};
+use haltline_verification::prove::command::verified_fresh;
 use std::path::Path;
 
 /// The smallest set of shipped scenarios that exercises every monitor, and a wall.
-const SMALL: [&str; 2] = ["emergency_stop", "overtaking"];
+const SMALL: [&str; 3] = ["emergency_stop", "input_ranges_nan", "overtaking"];
 
 fn small_folder(name: &str) -> std::path::PathBuf {
     let scenarios = folder(name);
@@ -36,12 +37,24 @@ fn certify(scenarios: &Path, out: &Path) -> std::process::Output {
 fn two_runs_give_the_same_bytes_but_for_the_times() {
     let scenarios = small_folder("certify_small");
     let outs = [folder("certify_a"), folder("certify_b")];
+    let proved = verified_fresh(&root()).is_ok();
     for out in &outs {
         let output = certify(&scenarios, out);
-        expect_exit(&output, 0);
-        assert!(stdout(&output).contains("Every claim that is made holds."));
+        // Without a fresh proof ledger, the same runs end as "not checkable".
+        expect_exit(&output, if proved { 0 } else { 3 });
+        let said = stdout(&output);
+        assert_eq!(
+            said.contains("Every claim that is made holds."),
+            proved,
+            "{said}"
+        );
     }
-    for name in ["report.html", "certificate.json", "junit.xml"] {
+    for name in [
+        "report.html",
+        "certificate.json",
+        "junit.xml",
+        "claims.sarif",
+    ] {
         let [a, b] = outs
             .each_ref()
             .map(|out| std::fs::read(out.join(name)).expect(name));
@@ -50,13 +63,27 @@ fn two_runs_give_the_same_bytes_but_for_the_times() {
     let json = std::fs::read_to_string(outs[0].join("certificate.json")).expect("json");
     let certificate: serde_json::Value = serde_json::from_str(&json).expect("valid");
     assert_eq!(certificate["schema"], "haltline-certificate/1");
-    assert_eq!(certificate["verdict"]["exit_code"], 0);
-    assert_eq!(certificate["cases"].as_array().map(Vec::len), Some(3));
+    assert_eq!(
+        certificate["verdict"]["exit_code"],
+        if proved { 0 } else { 3 }
+    );
+    let claims = certificate["claims"].as_array().expect("claims");
+    for id in ["PROOFS", "GUARD"] {
+        let claim = claims
+            .iter()
+            .find(|claim| claim["id"] == id)
+            .expect("claimed");
+        assert_eq!(claim["status"] == "holds", proved, "{claim}");
+    }
+    assert_eq!(certificate["cases"].as_array().map(Vec::len), Some(4));
     assert_eq!(
         certificate["scenario_files"].as_array().map(Vec::len),
-        Some(3)
+        Some(4)
     );
-    assert!(!json.to_lowercase().contains("\"proved\""));
+    // Only a check of the ledger may call itself proved.
+    let checks = certificate["proofs"]["checks"].as_array().expect("checks");
+    let means = checks.iter().filter(|check| check["means"] == "proved");
+    assert_eq!(json.matches("\"proved\"").count(), means.count());
     let timing = std::fs::read_to_string(outs[0].join("timing.json")).expect("timing");
     assert!(timing.contains("scenarios_s"));
 }
@@ -78,6 +105,9 @@ fn every_key_of_the_certificate_is_documented() {
         case,
         &case["guarded"],
         &certificate["verdict"],
+        &claim["evidence"],
+        &certificate["proofs"],
+        &certificate["proofs"]["checks"][0],
     ] {
         for key in object.as_object().expect("object").keys() {
             assert!(documented.contains(key), "CERTIFICATE.md lacks `{key}`");
@@ -120,6 +150,16 @@ fn a_scenario_that_does_not_come_true_fails_and_names_its_replay() {
     let run_out = folder("certify_fails_replay").display().to_string();
     let replayed = haltline(&[args.as_slice(), &["--out", &run_out]].concat());
     expect_exit(&replayed, 1);
+    let sarif = std::fs::read_to_string(out.join("claims.sarif")).expect("sarif");
+    let sarif: serde_json::Value = serde_json::from_str(&sarif).expect("valid");
+    let results = sarif["runs"][0]["results"].as_array().expect("results");
+    let about = |id| results.iter().any(|result| result["ruleId"] == id);
+    assert!(about("SCENARIOS") && !about("LATCH"), "{sarif}");
+    assert!(results.iter().all(|result| {
+        let text = result["message"]["text"].as_str().unwrap_or_default();
+        let place = &result["locations"][0]["physicalLocation"];
+        text.contains("Replay: ") && place["artifactLocation"]["uri"] == "robots/seekur_jr.toml"
+    }));
     let junit = std::fs::read_to_string(out.join("junit.xml")).expect("junit");
     assert!(junit.contains("<failure"), "{junit}");
 }

@@ -251,29 +251,80 @@ fn refused(data: &Path, robot: &str) -> String {
 #[test]
 fn bad_input_is_named_with_file_and_line() {
     let data = generate("mrclam_bad", Extras::default());
-    let file = data.join("Robot2_Measurement.dat");
-    let good = std::fs::read_to_string(&file).expect("read");
-    for (bad, part) in [
+    for (file, bad, part) in [
         (
+            "Robot2_Measurement.dat",
             "# c\n1.0 114 2.0\n",
-            "Robot2_Measurement.dat:2: 3 values, expected 4",
+            ":2: 3 values, expected 4",
         ),
         (
+            "Robot2_Measurement.dat",
             "1.0 114 far 0.1\n",
-            "Robot2_Measurement.dat:1: `far` is not a number",
+            ":1: `far` is not a number",
         ),
         (
+            "Robot2_Measurement.dat",
             "1.0 114 2 0\n0.5 114 2 0\n",
-            "Robot2_Measurement.dat:2: time 0.5 s is before",
+            ":2: time 0.5 s is before",
         ),
-        ("1.0 -3 nan 0\n", "`nan` is not a number"),
-        ("# nothing\n", "0 rows, needs at least 1"),
+        (
+            "Robot2_Measurement.dat",
+            "1.0 -3 nan 0\n",
+            ":1: `nan` is not a number",
+        ),
+        (
+            "Robot2_Measurement.dat",
+            "1.0 -3 2 0\n",
+            ":1: barcode -3: write a whole number",
+        ),
+        (
+            "Robot2_Measurement.dat",
+            "# nothing\n",
+            ":1: 0 rows, needs at least 1",
+        ),
+        (
+            "Robot2_Odometry.dat",
+            "1.0 0.1 0\n2.0 1e300 0\n",
+            ":2: 1e300 m/s",
+        ),
+        (
+            "Robot2_Odometry.dat",
+            "1.0 0.1 7\n",
+            ":1: 0.1 m/s and 7.0 rad/s",
+        ),
+        (
+            "Robot2_Groundtruth.dat",
+            "1.0 0 0 0\n2.0 1e9 0 0\n",
+            ":2: a pose beyond 1000000 m",
+        ),
+        (
+            "Barcodes.dat",
+            "6 1.5\n",
+            ":1: barcode 1.5: write a whole number",
+        ),
+        (
+            "Barcodes.dat",
+            "70000 5\n",
+            ":1: subject 70000: write a whole number below 1024",
+        ),
+        (
+            "Barcodes.dat",
+            "6 5\n7 5\n",
+            ":2: barcode 5 is that of subject 6 already",
+        ),
+        (
+            "Landmark_Groundtruth.dat",
+            "6 0 0 0 0\n6 1 0 0 0\n",
+            ":2: landmark 6 stands above already",
+        ),
     ] {
-        std::fs::write(&file, bad).expect("written");
+        let path = data.join(file);
+        let good = std::fs::read_to_string(&path).expect("read");
+        std::fs::write(&path, bad).expect("written");
         let said = refused(&data, "2");
-        assert!(said.contains(part), "{said}");
+        std::fs::write(&path, good).expect("written");
+        assert!(said.contains(&format!("{file}{part}")), "{said}");
     }
-    std::fs::write(&file, good).expect("written");
     assert!(refused(&data, "9").contains("robot's number, 1 to 5"));
     assert!(refused(&data, "3").contains("Robot3_Odometry.dat: cannot be read"));
     assert!(refused(Path::new("no/such"), "1").contains("not a folder"));

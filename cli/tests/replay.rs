@@ -5,7 +5,9 @@
 
 mod common;
 
-use common::{expect_exit, folder, haltline, root, stderr, stdout, write};
+use common::{
+    events, expect_exit, first_point_m, folder, haltline, room_range_m, root, stderr, stdout, write,
+};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -22,11 +24,8 @@ fn drive_at_wall(wall_m: f64, speed_mps: f64) -> String {
         let _ = write!(text, "{:.3},{step_m:.5},0.0,0.0", f64::from(row) * 0.25);
         for beam in 0..361 {
             let angle = (f64::from(beam) * 0.5 - 90.0).to_radians();
-            let ahead = (wall_m - x_m - 0.78) / angle.cos().max(1e-9);
-            let side = 3.0 / angle.sin().abs().max(1e-9);
-            // A millimetre of ripple: no real sweep repeats the one before.
-            let ripple = f64::from((beam + row) % 3) * 0.001;
-            let _ = write!(text, ",{:.3}", ahead.min(side) + ripple);
+            let range = room_range_m(wall_m - x_m - 0.78, angle, (beam, row));
+            let _ = write!(text, ",{range:.3}");
         }
         text.push('\n');
     }
@@ -34,34 +33,14 @@ fn drive_at_wall(wall_m: f64, speed_mps: f64) -> String {
 }
 
 fn replay(name: &str, log: &str) -> (std::process::Output, PathBuf) {
-    let out = folder(name);
-    let file = write(&out, "drive.csv", log);
-    let args = [
-        "replay",
-        "--format",
-        "sena",
-        &file,
-        "--out",
-        &out.display().to_string(),
-    ];
-    (haltline(&args), out)
-}
-
-fn events(out: &std::path::Path) -> Vec<serde_json::Value> {
-    let text = std::fs::read_to_string(out.join("replay.json")).expect("replay.json");
-    serde_json::from_str(&text).expect("a list")
+    common::replay("sena", name, "drive.csv", log)
 }
 
 #[test]
 fn driving_at_a_wall_is_braked_and_the_wall_is_named() {
     let (output, out) = replay("replay_wall", &drive_at_wall(9.0, 1.0));
     expect_exit(&output, 0);
-    let braked: Vec<_> = events(&out)
-        .into_iter()
-        .filter(|event| event["refusal"] == "known_point")
-        .collect();
-    let first = braked.first().expect("it brakes for the wall");
-    let x_m = first["point_m"][0].as_f64().expect("a point");
+    let x_m = first_point_m(&out);
     assert!(
         (x_m - 9.0).abs() < 0.1,
         "the deciding point is at x = {x_m} m"

@@ -4,13 +4,12 @@
 //! believed in (drawn as the map), and the odometry (what the kernel is shown).
 
 mod map;
-mod read;
 
+pub use haltline_logs::carmen::{Carmen, read};
 pub use map::write_map;
-pub use read::{Carmen, read};
 
 use crate::failure::Failure;
-use crate::sena::Header;
+use haltline_logs::sena::Header;
 use haltline_robots::Robot;
 
 /// The SENA wheelchair with this log's laser: logs say nothing about the robot.

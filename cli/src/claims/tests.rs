@@ -28,6 +28,7 @@ fn run(monitors: Vec<MonitorReport>) -> RunResult {
 
 fn monitor(id: &str, engaged: u64, violations: &[f64]) -> MonitorReport {
     MonitorReport {
+        margin: None,
         id: id.into(),
         checked: 100,
         engaged,

@@ -1,12 +1,13 @@
 //! Feeds a data set to the kernel's marker filter in the order of time.
 
-use super::read::{Command, DataSet, Measurement, ROBOTS};
 use crate::failure::Failure;
 use haltline::marker::{
     FRAME_MAX, FilterRules, Frame, FrameVerdict, Health, Increment, MarkerEkf, MarkerFilter,
     OdometryNoise, Pose2, Prediction, Sighting, SightingNoise, Verdict,
 };
 use haltline::time::{Duration, Instant};
+use haltline_logs::mrclam::{Command, DataSet, Measurement, ROBOTS};
+use serde::Serialize;
 use std::time::Instant as WallClock;
 
 /// Room for more landmarks than the data sets have; none is known beforehand.
@@ -22,13 +23,14 @@ const RANGE_PART: f64 = 0.04;
 const BEARING_SIGMA_RAD: f64 = 0.03;
 
 /// What became of the measurements.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Counts {
     /// All of them.
     pub measurements: usize,
     /// Of barcodes that nobody wears.
     pub unknown_barcodes: usize,
     /// Of other robots, which move.
+    #[serde(rename = "other_robots")]
     pub robots: usize,
     /// Ranges or bearings that cannot be.
     pub malformed: usize,

@@ -5,7 +5,6 @@
 //! means something.
 
 mod drive;
-mod read;
 mod score;
 
 use crate::args::ReplayArgs;
@@ -13,8 +12,8 @@ use crate::failure::{Exit, Failure, prepare, write_file};
 use console::style;
 use drive::{Counts, Course};
 use haltline::marker::Pose2;
+use haltline_logs::mrclam::{self as read, DataSet};
 use indicatif::{ProgressBar, ProgressStyle};
-use read::DataSet;
 use score::{Alignment, Distance};
 use serde::Serialize;
 use std::path::Path;
@@ -31,17 +30,8 @@ struct Summary {
     landmarks_found: usize,
     landmarks_known: usize,
     landmarks_aligned: Distance,
-    measurements: usize,
-    unknown_barcodes: usize,
-    other_robots: usize,
-    malformed: usize,
-    fused: usize,
-    added: usize,
-    gated: usize,
-    removed: usize,
-    unused: usize,
-    relocated: usize,
-    odometry_gaps: usize,
+    #[serde(flatten)]
+    counts: Counts,
     lost_at_the_end: bool,
 }
 
@@ -110,19 +100,6 @@ fn summarise(robot: u16, data: &DataSet, course: &Course) -> Result<Summary, Fai
     let reckoned = score::paired(data, &course.samples, |sample| sample.dead_reckoning);
     let alignment = Alignment::of(&estimated);
     let landmarks = score::landmarks(data, course.filter.as_ref());
-    let Counts {
-        measurements,
-        unknown_barcodes,
-        robots,
-        malformed,
-        fused,
-        added,
-        gated,
-        removed,
-        unused,
-        relocated,
-        odometry_gaps,
-    } = course.counts;
     let times = (course.samples.first(), course.samples.last());
     Ok(Summary {
         robot,
@@ -134,17 +111,7 @@ fn summarise(robot: u16, data: &DataSet, course: &Course) -> Result<Summary, Fai
         landmarks_found: landmarks.len(),
         landmarks_known: data.landmarks.len(),
         landmarks_aligned: Distance::of(&landmarks, &alignment),
-        measurements,
-        unknown_barcodes,
-        other_robots: robots,
-        malformed,
-        fused,
-        added,
-        gated,
-        removed,
-        unused,
-        relocated,
-        odometry_gaps,
+        counts: course.counts,
         lost_at_the_end: course.lost,
     })
 }
@@ -177,24 +144,24 @@ fn print(folder: &Path, summary: &Summary, wall_us: &[f64]) {
     );
     say!(
         "\nmeasurements                {}: {} fused, {} began a landmark, {} gated, {} dropped a landmark,",
-        summary.measurements,
-        summary.fused,
-        summary.added,
-        summary.gated,
-        summary.removed
+        summary.counts.measurements,
+        summary.counts.fused,
+        summary.counts.added,
+        summary.counts.gated,
+        summary.counts.removed
     );
     say!(
         "{:27} {} of unknown barcodes, {} of other robots, {} malformed, {} not used",
         "",
-        summary.unknown_barcodes,
-        summary.other_robots,
-        summary.malformed,
-        summary.unused
+        summary.counts.unknown_barcodes,
+        summary.counts.robots,
+        summary.counts.malformed,
+        summary.counts.unused
     );
     say!(
         "pose taken over {} times; {} gaps in the odometry{}",
-        summary.relocated,
-        summary.odometry_gaps,
+        summary.counts.relocated,
+        summary.counts.odometry_gaps,
         if summary.lost_at_the_end {
             "; lost at the end"
         } else {

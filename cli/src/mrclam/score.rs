@@ -1,8 +1,8 @@
 //! How good the estimate was: absolute trajectory error, raw and after alignment, landmarks.
 
 use super::drive::Sample;
-use super::read::{DataSet, Truth};
 use haltline::marker::{MarkerFilter, Pose2};
+use haltline_logs::mrclam::{DataSet, Truth};
 use serde::Serialize;
 
 /// The true pose is not interpolated over longer gaps, s.

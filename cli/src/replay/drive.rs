@@ -1,7 +1,7 @@
 //! The recorded drive as a course: poses, twists and returns in one frame.
 
 use crate::picture::view::{Pose, transform};
-use crate::sena::Log;
+use haltline_logs::sena::Log;
 
 /// Rows on either side over which a motion is averaged: increments and stamps of a log often come
 /// from different clocks, and single rows then jump.
@@ -192,7 +192,7 @@ pub fn length_m(moments: &[Moment]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sena::{Header, Row};
+    use haltline_logs::sena::{Header, Row};
 
     fn log() -> Log {
         let row = |t_s, dx, ranges: [f32; 3]| Row {

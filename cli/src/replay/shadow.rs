@@ -4,12 +4,12 @@ use super::drive::Moment;
 use super::verdict::{ask_guard, hazard};
 use crate::failure::Failure;
 use crate::picture::view::{Pose, transform};
-use crate::sena::Log;
 use haltline::convert::{self, Round};
 use haltline::decision::{Decision, StopStatus};
 use haltline::input::{Beam, Inputs, Reading, Scan};
 use haltline::time::{Duration, Instant};
 use haltline::units::{AngularSpeed, Speed};
+use haltline_logs::sena::Log;
 use haltline_robots::{BEAMS, MEMORY, Robot, RobotConfig, SCANNERS};
 use std::time::Instant as WallClock;
 

@@ -1,6 +1,6 @@
 //! The claims, the assumptions and the requirements of the report.
 
-use super::words;
+use super::{proofs, words};
 use crate::certificate::AssumptionRecord;
 use crate::claims::{Claim, EvidenceKind, Status, first_of_each_case};
 use crate::explain;
@@ -63,7 +63,11 @@ fn card(page: &mut String, claim: &Claim) {
         statement = escape(&claim.statement),
         evidence = escape(&claim.evidence.words),
     );
-    if claim.evidence.kind == EvidenceKind::Tested && claim.evidence.ticks_checked > 0 {
+    let driven = matches!(
+        claim.evidence.kind,
+        EvidenceKind::Tested | EvidenceKind::Searched
+    );
+    if driven && claim.evidence.ticks_checked > 0 {
         let _ = write!(
             page,
             "; {} ticks judged, {} of them with something to say",
@@ -92,6 +96,16 @@ fn card(page: &mut String, claim: &Claim) {
         }
         page.push_str("</details>");
     }
+    let behind = &claim.evidence.proofs;
+    if !behind.is_empty() {
+        let count = words::count(behind.len(), "check");
+        let _ = write!(page, "<details><summary>{count} of the ledger</summary>");
+        for id in behind {
+            let (anchor, id) = (proofs::anchor(id), escape(id));
+            let _ = write!(page, "<a class=\"small\" href=\"#{anchor}\">{id}</a> ");
+        }
+        page.push_str("</details>");
+    }
     page.push_str("</div></div>\n");
 }
 
@@ -112,6 +126,8 @@ fn counterexamples(page: &mut String, claim: &Claim) {
         // A failing check of the contract has its own row; everything else is a run.
         let anchor = if found.case.starts_with("C-") {
             found.case.clone()
+        } else if found.case.contains("::") {
+            proofs::anchor(&found.case)
         } else {
             case_anchor(&found.case)
         };

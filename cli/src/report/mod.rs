@@ -6,6 +6,7 @@ pub mod claims;
 pub mod contract;
 pub mod drawing;
 pub mod page;
+pub mod proofs;
 pub mod robot;
 mod sweeps;
 pub mod words;

@@ -1,6 +1,6 @@
 //! `report.html`: one self-contained file, readable on light and dark paper, without scripts.
 
-use super::{cases, claims, contract, robot, words};
+use super::{cases, claims, contract, proofs, robot, words};
 use crate::certificate::Certificate;
 use crate::picture::{style, svg, svg::escape};
 use haltline_robots::Robot;
@@ -23,6 +23,7 @@ pub fn write(certificate: &Certificate, robot: &Robot, suite: &SuiteResult) -> S
     );
     page.push_str(
         "<nav><div><b>Haltline</b><a href=\"#claims\">Claims</a><a href=\"#contract\">Contract</a>\
+         <a href=\"#proofs\">Proofs</a>\
          <a href=\"#runs\">Runs</a><a href=\"#assumptions\">Assumptions</a>\
          <a href=\"#requirements\">Requirements</a><a href=\"#reproduce\">Reproduce</a></div></nav>\n",
     );
@@ -35,6 +36,8 @@ pub fn write(certificate: &Certificate, robot: &Robot, suite: &SuiteResult) -> S
     );
     claims::write(&mut page, &certificate.claims);
     contract::write(&mut page, &certificate.contract);
+    proofs::write(&mut page, &certificate.proofs);
+    proofs::measured(&mut page, &certificate.measured);
     cases::write(&mut page, certificate, suite);
     claims::write_assumptions(&mut page, &certificate.assumptions);
     claims::write_requirements(&mut page);
@@ -74,7 +77,7 @@ fn banner(page: &mut String, certificate: &Certificate, suite: &SuiteResult) {
         page,
         "<div class=\"banner {}\"><div class=\"soft small\">Navigation safety certificate</div><h1>{}</h1>\
          <div class=\"result\">{}</div><p class=\"soft\">Evidence: simulation with monitors and exact contact \
-         geometry. Proofs and attack search are not claimed yet.</p><div class=\"tiles\">",
+         geometry; proofs where a claim names them. Attack search is not claimed yet.</p><div class=\"tiles\">",
         verdict.result,
         escape(&certificate.robot.name),
         escape(&sentence)

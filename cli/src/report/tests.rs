@@ -3,6 +3,7 @@
 use super::{page, words};
 use crate::certificate::{Certificate, Parts};
 use crate::claims::{self, Replay, Status};
+use crate::proofs::Proofs;
 use haltline_robots::Robot;
 use haltline_robots::contract::Contract;
 use haltline_scenarios::result::{
@@ -137,6 +138,7 @@ fn run(guarded: bool, stop_at: f64) -> RunResult {
         monitors: ["CLAIM", "LIMIT", "ZONE", "FRESH", "SILENT", "LATCH"]
             .iter()
             .map(|id| MonitorReport {
+                margin: None,
                 id: (*id).into(),
                 checked: 200,
                 engaged: 40,
@@ -207,15 +209,20 @@ fn certificate(robot: &Robot, suite: &SuiteResult) -> Certificate {
         robot: None,
         period_s: 0.04,
     };
+    let proofs = Proofs::of_ledger();
     let mut claims = claims::from_suite(suite, &replay);
+    claims.extend(claims::from_proofs(&proofs));
     claims.extend(claims::not_claimed());
+    claims::attach(&mut claims, &proofs);
     Certificate::new(Parts {
+        adversary: haltline_attack::hostile::Hostile::default(),
         robot,
         contract: Contract::of(robot),
         suite,
         scenario_files: vec![],
         claims,
         replay: &replay,
+        proofs,
     })
 }
 

@@ -95,3 +95,37 @@ pub fn write(folder: &Path, name: &str, text: &str) -> String {
     std::fs::write(&path, text).expect("written");
     path.display().to_string()
 }
+
+/// Runs `haltline replay` on a log of this text; the command's output and the folder it wrote to.
+pub fn replay(format: &str, name: &str, file: &str, log: &str) -> (Output, PathBuf) {
+    let out = folder(name);
+    let file = write(&out, file, log);
+    let folder = out.display().to_string();
+    let args = ["replay", "--format", format, &file, "--out", &folder];
+    (haltline(&args), out)
+}
+
+/// What a replay wrote down as events.
+pub fn events(out: &Path) -> Vec<serde_json::Value> {
+    let text = std::fs::read_to_string(out.join("replay.json")).expect("replay.json");
+    serde_json::from_str(&text).expect("a list")
+}
+
+/// How far along x the first known point lies for which a replay braked, m.
+pub fn first_point_m(out: &Path) -> f64 {
+    let events = events(out);
+    let mut braked = events
+        .iter()
+        .filter(|event| event["refusal"] == "known_point");
+    let first = braked.next().expect("it brakes for a point");
+    first["point_m"][0].as_f64().expect("a point")
+}
+
+/// Range of the beam at `angle` (radians, left positive) in a room 6 m wide whose end is `ahead_m` away.
+///
+/// A millimetre of ripple over beams and rows: no real sweep repeats the one before.
+pub fn room_range_m(ahead_m: f64, angle: f64, (beam, row): (u32, u32)) -> f64 {
+    let ahead = ahead_m / angle.cos().max(1e-9);
+    let side = 3.0 / angle.sin().abs().max(1e-9);
+    ahead.min(side).min(81.9) + f64::from((beam + row) % 3) * 0.001
+}
