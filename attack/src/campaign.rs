@@ -71,9 +71,13 @@ impl Shrunk {
                 let why = if *told {
                     "The kernel is told what [told] says; told the truth, it does nothing wrong."
                 } else {
-                    "Every assumption is kept: this is a bug."
+                    "This is a bug."
                 };
-                format!("{invariant} violated: {what}.\n# {why}")
+                let broken = match &self.trial.broken[..] {
+                    [] => "No assumption is broken".to_owned(),
+                    ids => format!("Broken, but no excuse for this: {}", ids.join(", ")),
+                };
+                format!("{invariant} violated: {what}.\n# {broken}. {why}")
             }
             Verdict::Broken { id, what } => format!("{id} is broken: {what}."),
             other => format!("{other:?}"),
@@ -148,7 +152,7 @@ const fn is_violation(found: &Found) -> bool {
 #[must_use]
 pub fn small(setting: &Setting, found: &Found) -> Shrunk {
     let (mildest, severity) = milder(setting, found);
-    let (text, runs) = shrink(setting, &mildest, &found.trial.verdict);
+    let (text, runs) = shrink(setting, &mildest, &found.trial);
     Shrunk {
         trial: trial::run(setting, &text),
         text,
@@ -168,10 +172,7 @@ fn milder(setting: &Setting, found: &Found) -> (String, Option<f64>) {
     for _ in 0..8 {
         let middle = (low + high) / 2.0;
         let plan = compose(setting, found.structure, &found.genes, Some(middle));
-        if trial::run(setting, &plan.text)
-            .verdict
-            .same(&found.trial.verdict)
-        {
+        if trial::run(setting, &plan.text).shows(&found.trial) {
             (kept, high) = (plan.text, middle);
         } else {
             low = middle;

@@ -1,7 +1,7 @@
 //! Makes a found scenario small: whatever can go, goes; whatever can be a rounder number, becomes one.
 
 use crate::setting::Setting;
-use crate::trial::{self, Verdict};
+use crate::trial::{self, Trial};
 use toml::{Table, Value};
 
 /// Runs spent on one scenario at most.
@@ -16,9 +16,9 @@ enum Step {
     Index(usize),
 }
 
-/// The smallest scenario found with the same verdict, and the runs it took.
+/// The smallest scenario found that shows the same as `shown` and breaks no other assumption, and the runs it took.
 #[must_use]
-pub fn shrink(setting: &Setting, text: &str, verdict: &Verdict) -> (String, usize) {
+pub fn shrink(setting: &Setting, text: &str, shown: &Trial) -> (String, usize) {
     let Ok(document) = text.parse::<Table>() else {
         return (text.to_owned(), 0);
     };
@@ -30,7 +30,7 @@ pub fn shrink(setting: &Setting, text: &str, verdict: &Verdict) -> (String, usiz
         }
         runs += 1;
         let text = toml::to_string(candidate).unwrap_or_default();
-        trial::run(setting, &text).verdict.same(verdict)
+        trial::run(setting, &text).shows(shown)
     };
     loop {
         let before = best.clone();

@@ -5,7 +5,7 @@ use haltline_scenarios::batch::{Case, equip, run_one};
 use haltline_scenarios::file::parse;
 use haltline_scenarios::monitor::{BUMPED, EXCUSED, FORGOTTEN, OUT_OF_SIGHT};
 use haltline_scenarios::result::RunResult;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What a run showed.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,6 +75,8 @@ pub struct Trial {
     pub margins: BTreeMap<String, f64>,
     /// What it showed.
     pub verdict: Verdict,
+    /// Ids of the assumptions that the run broke, each once.
+    pub broken: Vec<String>,
     /// Ticks judged.
     pub ticks: u64,
     /// Ticks with an accepted motion.
@@ -84,6 +86,13 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// Whether it shows the same as `other` and breaks no assumption that the other keeps.
+    #[must_use]
+    pub fn shows(&self, other: &Self) -> bool {
+        let keeps = |id: &String| other.broken.contains(id);
+        self.verdict.same(&other.verdict) && self.broken.iter().all(keeps)
+    }
+
     /// The signed distance that a search for this invariant makes smaller; `CLAIM` is a contact.
     #[must_use]
     pub fn towards(&self, invariant: &str) -> f64 {
@@ -131,10 +140,13 @@ pub fn broken(setting: &Setting, text: &str) -> Vec<String> {
     else {
         return Vec::new();
     };
-    let broken = run.result.assumptions_broken.into_iter();
-    let mut ids: Vec<String> = broken.map(|one| one.id).collect();
-    ids.dedup();
-    ids
+    broken_by(&run.result)
+}
+
+fn broken_by(run: &RunResult) -> Vec<String> {
+    let broken = run.assumptions_broken.iter();
+    let ids: BTreeSet<&String> = broken.map(|one| &one.id).collect();
+    ids.into_iter().cloned().collect()
 }
 
 /// The same scenario, with a kernel that knows the truth.
@@ -163,6 +175,7 @@ fn refused(message: String) -> Trial {
         robustness: NOTHING,
         margins: BTreeMap::new(),
         verdict: Verdict::Refused(message),
+        broken: Vec::new(),
         ticks: 0,
         moving: 0,
         trace: String::new(),
@@ -190,6 +203,7 @@ fn judged(run: &RunResult, trace: String, breaking: bool) -> Trial {
         robustness,
         margins: margins.collect(),
         verdict,
+        broken: broken_by(run),
         ticks: claim.map_or(0, |monitor| monitor.checked),
         moving: claim.map_or(0, |monitor| monitor.engaged),
         trace,

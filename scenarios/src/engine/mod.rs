@@ -183,36 +183,59 @@ impl<'a> Engine<'a> {
             .distances(&self.world, &self.pose(), seconds(t_us))
     }
 
-    /// At a reset the operator vouches for a disc, but no farther than the nearest return of the
-    /// newest scans less their error; any part of a body inside that disc breaks A-START.
+    /// At a reset the operator vouches for a disc, but no farther than the nearest return of the newest scans less
+    /// their error, and for the skirt around the footprint. Any part of a body inside that disc breaks A-START, and so
+    /// does a body in the skirt that no beam returned.
     fn vouch(&mut self, t_us: u64) {
-        let pose = self.pose();
+        let (pose, t_s) = (self.pose(), seconds(t_us));
+        let memory = &self.robot.values.memory;
+        let (skirt_m, radius_m) = (memory.skirt_m, self.vouched_radius_m(&pose));
+        let from_centre = self
+            .judge
+            .distances_from(&self.world, [pose.x, pose.y], t_s);
+        let from_footprint = self.distances(t_us);
+        let returned = |body: usize| {
+            self.newest
+                .iter()
+                .flatten()
+                .any(|scan| scan.bodies.contains(&Some(body)))
+        };
+        let distances = from_centre.into_iter().zip(from_footprint);
+        for (index, (body, (centre_m, footprint_m))) in
+            self.world.bodies().iter().zip(distances).enumerate()
+        {
+            let what = if body.invisible {
+                continue;
+            } else if centre_m < radius_m {
+                format!(
+                    "{centre_m:.3} m from the rotation centre at the reset, inside the vouched {radius_m:.3} m"
+                )
+            } else if footprint_m < skirt_m && !returned(index) {
+                format!(
+                    "{footprint_m:.3} m from the footprint at the reset, unseen and in the vouched skirt of {skirt_m:.3} m"
+                )
+            } else {
+                continue;
+            };
+            self.broken.push(Broken {
+                id: "A-START",
+                what: format!("{} stands {what}", body.name),
+                body: Some(index),
+                from_s: t_s,
+            });
+        }
+    }
+
+    /// How far the operator's word reaches from the rotation centre, metres.
+    fn vouched_radius_m(&self, pose: &Pose) -> f64 {
         let away = |[x, y]: [f64; 2]| libm::hypot(x - pose.x, y - pose.y);
         let scans = self.newest.iter().flatten();
-        let radius_m = scans.fold(self.robot.values.memory.clear_at_start_m, |radius, scan| {
+        scans.fold(self.robot.values.memory.clear_at_start_m, |radius, scan| {
             let nearest = self
                 .returns(scan)
                 .map(|(point, error_m)| away(point) - error_m);
             nearest.fold(radius, f64::min)
-        });
-        let t_s = seconds(t_us);
-        let distances = self
-            .judge
-            .distances_from(&self.world, [pose.x, pose.y], t_s);
-        for (index, (body, distance)) in self.world.bodies().iter().zip(distances).enumerate() {
-            if distance < radius_m && !body.invisible {
-                self.broken.push(Broken {
-                    id: "A-START",
-                    what: format!(
-                        "{} stands {distance:.2} m from the rotation centre at the reset, inside the \
-                         vouched {radius_m:.2} m",
-                        body.name
-                    ),
-                    body: Some(index),
-                    from_s: t_s,
-                });
-            }
-        }
+        })
     }
 
     /// Triggers, sweeps and odometry samples that are complete at `t_us`.

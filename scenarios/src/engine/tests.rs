@@ -178,3 +178,28 @@ fn only_what_reaches_into_the_vouched_disc_breaks_the_start() {
     // Ahead, 0.8 m away and seen: the word ends before it.
     assert!(named("center_m = [0.9, 0.0]").is_empty());
 }
+
+#[test]
+fn an_unseen_body_in_the_skirt_breaks_the_start() {
+    // A box in view ends the operator's word at half a metre; what stands behind a rear corner lies farther than that
+    // from the rotation centre, but not from the footprint.
+    let named = |y_m: f64| {
+        let near = "\n[[box]]\ncenter_m = [0.8, 0.0]\nsize_m = [0.1, 0.1]\n";
+        let text = format!("{ROOM}{near}\n[[circle]]\nradius_m = 0.1\ncenter_m = [-0.6, {y_m}]\n")
+            .replace("timeout_s = 10.0", "timeout_s = 1.0");
+        let controller = Some(Box::<PassThrough>::default() as Box<dyn Controller>);
+        let result = run(&scenario(&text), &robot(), controller).result;
+        let broken = result.assumptions_broken.into_iter();
+        broken
+            .map(|b| format!("{} {}", b.id, b.what))
+            .collect::<Vec<_>>()
+    };
+    let [broken] = &named(-0.56)[..] else {
+        panic!("{:?}", named(-0.56));
+    };
+    assert!(
+        broken.contains("A-START circle 0") && broken.contains("skirt"),
+        "{broken}"
+    );
+    assert!(named(-0.58).is_empty(), "{:?}", named(-0.58));
+}
