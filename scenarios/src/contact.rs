@@ -53,6 +53,15 @@ impl Judge {
             .collect()
     }
 
+    /// Distance from the footprint at `robot` to a point; zero inside.
+    #[must_use]
+    pub fn distance_to(&self, point: [f64; 2], robot: &Pose) -> f64 {
+        let middle = robot.then(Pose::new(self.centre[0], self.centre[1], 0.0));
+        let dot = isometry(&Pose::new(point[0], point[1], 0.0));
+        query::distance(&isometry(&middle), &self.footprint, &dot, &Ball::new(0.0))
+            .map_or(0.0, |found| found.distance)
+    }
+
     /// Distance from the footprint at `robot` to each body at `t_s`; zero means contact.
     #[must_use]
     pub fn distances(&self, world: &World, robot: &Pose, t_s: f64) -> Vec<f64> {

@@ -3,6 +3,7 @@
 mod host;
 mod operator;
 mod recorder;
+mod vouch;
 
 #[cfg(test)]
 mod tests;
@@ -23,7 +24,7 @@ use crate::odometry::{Odometer, RawOdometry};
 use crate::populate::populate;
 use crate::proposer::GoalDisc;
 use crate::result::RunResult;
-use crate::sensor::{RawScan, Sensors, beam_time_us};
+use crate::sensor::{RawScan, Sensors};
 use crate::skid::Slide;
 use crate::world::World;
 use host::Host;
@@ -183,61 +184,6 @@ impl<'a> Engine<'a> {
             .distances(&self.world, &self.pose(), seconds(t_us))
     }
 
-    /// At a reset the operator vouches for a disc, but no farther than the nearest return of the newest scans less
-    /// their error, and for the skirt around the footprint. Any part of a body inside that disc breaks A-START, and so
-    /// does a body in the skirt that no beam returned.
-    fn vouch(&mut self, t_us: u64) {
-        let (pose, t_s) = (self.pose(), seconds(t_us));
-        let memory = &self.robot.values.memory;
-        let (skirt_m, radius_m) = (memory.skirt_m, self.vouched_radius_m(&pose));
-        let from_centre = self
-            .judge
-            .distances_from(&self.world, [pose.x, pose.y], t_s);
-        let from_footprint = self.distances(t_us);
-        let returned = |body: usize| {
-            self.newest
-                .iter()
-                .flatten()
-                .any(|scan| scan.bodies.contains(&Some(body)))
-        };
-        let distances = from_centre.into_iter().zip(from_footprint);
-        for (index, (body, (centre_m, footprint_m))) in
-            self.world.bodies().iter().zip(distances).enumerate()
-        {
-            let what = if body.invisible {
-                continue;
-            } else if centre_m < radius_m {
-                format!(
-                    "{centre_m:.3} m from the rotation centre at the reset, inside the vouched {radius_m:.3} m"
-                )
-            } else if footprint_m < skirt_m && !returned(index) {
-                format!(
-                    "{footprint_m:.3} m from the footprint at the reset, unseen and in the vouched skirt of {skirt_m:.3} m"
-                )
-            } else {
-                continue;
-            };
-            self.broken.push(Broken {
-                id: "A-START",
-                what: format!("{} stands {what}", body.name),
-                body: Some(index),
-                from_s: t_s,
-            });
-        }
-    }
-
-    /// How far the operator's word reaches from the rotation centre, metres.
-    fn vouched_radius_m(&self, pose: &Pose) -> f64 {
-        let away = |[x, y]: [f64; 2]| libm::hypot(x - pose.x, y - pose.y);
-        let scans = self.newest.iter().flatten();
-        scans.fold(self.robot.values.memory.clear_at_start_m, |radius, scan| {
-            let nearest = self
-                .returns(scan)
-                .map(|(point, error_m)| away(point) - error_m);
-            nearest.fold(radius, f64::min)
-        })
-    }
-
     /// Triggers, sweeps and odometry samples that are complete at `t_us`.
     fn sense(&mut self, t_us: u64) {
         let pose = self.pose();
@@ -280,27 +226,6 @@ impl<'a> Engine<'a> {
             .filter_map(|sample| faults.odometry(t_us, sample))
             .last();
         (scans, odometry)
-    }
-
-    /// Where the beams of a scan came back from, in the world, with the error each may have.
-    fn returns(&self, scan: &RawScan) -> impl Iterator<Item = ([f64; 2], f64)> {
-        let scanner = self.robot.values.scanners.get(scan.scanner);
-        let sweep_us = self.sensors.sweep_us(scan.scanner);
-        let count = scan.ranges_m.len();
-        let beams = scan.ranges_m.iter().zip(&scan.bodies).enumerate();
-        beams
-            .filter(|(_, (range, body))| body.is_some() && range.is_finite() && **range > 0.0)
-            .filter_map(move |(beam, (range, _))| {
-                let scanner = scanner?;
-                let at_us = beam_time_us(scan.begun_us, sweep_us, beam, count);
-                let heading = scanner.first_beam_rad() + scanner.increment_rad() * beam as f64;
-                let mount = Pose::new(scanner.x_m, scanner.y_m, heading);
-                let point = self
-                    .pose_at(at_us)
-                    .then(mount)
-                    .apply([f64::from(*range), 0.0]);
-                Some((point, scanner.error_m()))
-            })
     }
 
     /// Integrates drive, pose and odometer over one step.
