@@ -82,6 +82,8 @@ step_faults() { # an eighth of the seeded faults; which one follows from the com
 step_attack() { # fixed numbers of runs: the same on every machine
     # Told less than the truth, the attacker must find it; told the truth, nothing.
     cargo test --release --quiet -p haltline-attack --test finds -- --include-ignored --nocapture --test-threads 1
+    # Two terms are no settings: taken out of copies of the kernel.
+    cargo run --release --quiet -p haltline-verification -- faults finds
     cargo run --release --quiet -- attack robots/seekur_jr.toml --break --strategy random --budget 1200 --out target/attack
 }
 

@@ -29,6 +29,8 @@ pub struct Hostile {
     pub moving: u64,
     /// Of these runs, contacts of which the claim does not speak.
     pub excused: u64,
+    /// The same by kind: the id of an assumption, or what the claim leaves out.
+    pub excuses: BTreeMap<String, u64>,
     /// Compositions that could not be run.
     pub refused: u64,
     /// By assumption, and fault if it is one of the catalogue: runs that broke it.
@@ -109,7 +111,10 @@ impl Hostile {
         self.kept += 1;
         self.ticks += trial.ticks;
         self.moving += trial.moving;
-        self.excused += u64::from(matches!(trial.verdict, Verdict::Excused(_)));
+        if let Verdict::Excused { why, .. } = &trial.verdict {
+            self.excused += 1;
+            *self.excuses.entry(why.clone()).or_default() += 1;
+        }
         if let Verdict::Violated {
             invariant, what, ..
         } = &trial.verdict

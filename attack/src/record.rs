@@ -18,6 +18,9 @@ pub struct Record {
     pub refused: u64,
     /// Contacts of which the claim does not speak.
     pub excused: u64,
+    /// The same by kind: the id of an assumption, or what the claim leaves out.
+    #[serde(default)]
+    pub excuses: BTreeMap<String, u64>,
     /// Ticks judged.
     pub ticks: u64,
     /// Ticks with an accepted motion.
@@ -85,6 +88,7 @@ impl Record {
         self.runs += done.runs;
         self.refused += done.refused;
         self.excused += done.excused;
+        self.excuse(&done.excuses);
         self.ticks += done.ticks;
         self.moving += done.moving;
         self.naked_runs += done.naked[0];
@@ -94,6 +98,13 @@ impl Record {
             done.worst.as_ref().map(|(worst, _)| *worst),
         );
         self.nearer(&done.margins);
+    }
+
+    fn excuse(&mut self, excuses: &BTreeMap<String, u64>) {
+        for (why, count) in excuses {
+            let known = self.excuses.entry(why.clone()).or_default();
+            *known = known.saturating_add(*count);
+        }
     }
 
     fn nearer(&mut self, margins: &BTreeMap<String, f64>) {
@@ -136,6 +147,7 @@ impl Record {
         self.runs = self.runs.saturating_add(other.runs);
         self.refused = self.refused.saturating_add(other.refused);
         self.excused = self.excused.saturating_add(other.excused);
+        self.excuse(&other.excuses);
         self.ticks = self.ticks.saturating_add(other.ticks);
         self.moving = self.moving.saturating_add(other.moving);
         self.naked_runs = self.naked_runs.saturating_add(other.naked_runs);

@@ -35,6 +35,8 @@ pub struct Searched {
     pub refused: u64,
     /// Of these, contacts of which the claim does not speak.
     pub excused: u64,
+    /// The same by kind.
+    pub excuses: BTreeMap<String, u64>,
     /// Ticks judged.
     pub ticks: u64,
     /// Ticks with an accepted motion.
@@ -138,12 +140,15 @@ impl State<'_> {
         done.runs += 1;
         done.ticks += trial.ticks;
         done.moving += trial.moving;
-        match trial.verdict {
+        match &trial.verdict {
             trial::Verdict::Refused(_) => {
                 done.refused += 1;
                 return;
             }
-            trial::Verdict::Excused(_) => done.excused += 1,
+            trial::Verdict::Excused { why, .. } => {
+                done.excused += 1;
+                *done.excuses.entry(why.clone()).or_default() += 1;
+            }
             _ => {}
         }
         for (invariant, margin) in &trial.margins {

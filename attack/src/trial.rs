@@ -16,7 +16,12 @@ pub enum Verdict {
     Refused(String),
     /// The robot touched something while it moved, and the claim does not speak of that: a body that no beam had
     /// ever returned came at it, or an assumption is broken that was to be kept.
-    Excused(String),
+    Excused {
+        /// A few words, the same for all contacts of the kind: the id of an assumption, or what the claim leaves out.
+        why: String,
+        /// What happened.
+        what: String,
+    },
     /// The robot touched something while it moved, and this assumption was broken on purpose.
     Broken {
         /// Id of the assumption.
@@ -96,7 +101,7 @@ impl Trial {
     /// The signed distance that a search for this invariant makes smaller; `CLAIM` is a contact.
     #[must_use]
     pub fn towards(&self, invariant: &str) -> f64 {
-        let clean = matches!(self.verdict, Verdict::Clean | Verdict::Excused(_));
+        let clean = matches!(self.verdict, Verdict::Clean | Verdict::Excused { .. });
         if clean && invariant != "CLAIM" {
             return self.margins.get(invariant).copied().unwrap_or(NOTHING);
         }
@@ -193,7 +198,7 @@ fn judged(run: &RunResult, trace: String, breaking: bool) -> Trial {
     let robustness = match &verdict {
         Verdict::Violated { invariant, .. } if invariant != "CLAIM" => -1.0,
         Verdict::Violated { .. } | Verdict::Broken { .. } => -fastest.max(1e-3),
-        Verdict::Excused(_) | Verdict::Refused(_) => NOTHING,
+        Verdict::Excused { .. } | Verdict::Refused(_) => NOTHING,
         Verdict::Clean => clearance_m,
     };
     let claim = run.monitors.iter().find(|monitor| monitor.id == "CLAIM");
@@ -210,16 +215,15 @@ fn judged(run: &RunResult, trace: String, breaking: bool) -> Trial {
     }
 }
 
+/// Kinds of contacts of which the claim does not speak, as the monitor says them; it is stricter than the claim, so that
+/// scenarios show them (CAVEATS.md).
+const OUTSIDE: [&str; 4] = [BUMPED, EXCUSED, FORGOTTEN, OUT_OF_SIGHT];
+
 fn verdict(run: &RunResult, breaking: bool) -> Verdict {
+    let outside = |what: &str| OUTSIDE.iter().find(|words| what.contains(**words));
     let objection = run.monitors.iter().find_map(|monitor| {
-        // The monitor is stricter than the claim, so that scenarios show it (CAVEATS.md).
         let mut violations = monitor.violations.iter();
-        let outside = |what: &str| {
-            [BUMPED, EXCUSED, FORGOTTEN, OUT_OF_SIGHT]
-                .iter()
-                .any(|words| what.contains(words))
-        };
-        let first = violations.find(|one| !outside(&one.what))?;
+        let first = violations.find(|one| outside(&one.what).is_none())?;
         Some((
             monitor.id.clone(),
             format!("at {:.2} s {}", first.t_s, first.what),
@@ -235,15 +239,26 @@ fn verdict(run: &RunResult, breaking: bool) -> Verdict {
     let Some(contact) = run.contacts.iter().find(|contact| contact.robot_moving) else {
         return Verdict::Clean;
     };
-    match run.assumptions_broken.first() {
-        Some(broken) if breaking => Verdict::Broken {
-            id: broken.id.clone(),
-            what: broken.what.clone(),
-        },
-        Some(broken) => Verdict::Excused(broken.what.clone()),
-        None => Verdict::Excused(format!(
-            "{} was never seen, forgotten by age or out of sight, stood beside the robot at rest, or bumped into it",
-            contact.body
-        )),
+    if let Some(broken) = run.assumptions_broken.first() {
+        let (id, what) = (broken.id.clone(), broken.what.clone());
+        return match breaking {
+            true => Verdict::Broken { id, what },
+            false => Verdict::Excused { why: id, what },
+        };
     }
+    let mut objections = run.monitors.iter().flat_map(|monitor| &monitor.violations);
+    let named = objections.find_map(|one| Some((outside(&one.what)?, one.what.clone())));
+    named.map_or_else(
+        || Verdict::Excused {
+            why: UNSEEN.to_owned(),
+            what: format!("{} can move and was never seen", contact.body),
+        },
+        |(why, what)| Verdict::Excused {
+            why: (*why).to_owned(),
+            what,
+        },
+    )
 }
+
+/// The kind that the monitor passes over in silence.
+const UNSEEN: &str = "which can move and no beam had returned";

@@ -72,7 +72,7 @@ fn fifty_thousand_navigated_steps_violate_nothing() {
             if let Verdict::Violated { .. } = trial.verdict {
                 panic!("{:?}\n{text}", trial.verdict);
             }
-            excused += u64::from(matches!(trial.verdict, Verdict::Excused(_)));
+            excused += u64::from(matches!(trial.verdict, Verdict::Excused { .. }));
             steps += trial.ticks;
             moving += trial.moving;
         }

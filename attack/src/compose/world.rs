@@ -153,7 +153,8 @@ fn gap(
     let x = outline.front_m + genes.between(0.6, 3.0);
     let width = outline.width_m() + genes.between(-0.1, 0.7);
     let middle = genes.between(-0.3, 0.3);
-    let deep = genes.between(0.1, 1.5);
+    let least = setting.truth.values.memory.body_width_min_m.max(0.1);
+    let deep = genes.between(least, least.max(1.5));
     for side in [1.0, -1.0] {
         let long = genes.between(0.2, 1.0);
         let mut body = Table::new();

@@ -69,6 +69,9 @@ pub(super) fn summary(record: &Record, out: &Path) {
         record.excused,
         record.refused
     );
+    for (why, count) in &record.excuses {
+        say!("    {count}: {why}");
+    }
     if !campaign.breaking {
         say!("  nearest to a violation: {}", nearest(record));
     }

@@ -18,7 +18,7 @@ const fn fault(
 }
 
 /// Chosen by hand.
-pub(super) const CHOSEN: [Fault; 49] = [
+pub(super) const CHOSEN: [Fault; 51] = [
     fault(
         "geometry/rect.rs",
         "point.x <= self.front",
@@ -312,5 +312,18 @@ pub(super) const CHOSEN: [Fault; 49] = [
         "            .saturating_add(u64::from(gap_mm));",
         "            .saturating_add(u64::from(gap_mm) * 0);",
         "test -p haltline --lib guard::memory",
+    ),
+    // The same two again: the attacker must find them without being told where to look.
+    fault(
+        "kernel/motion.rs",
+        "for sent in self.pipeline.since(since) {",
+        "for sent in self.pipeline.since(since).take(0) {",
+        "test --release -p haltline-attack --test finds commands_are_long -- --ignored",
+    ),
+    fault(
+        "guard/memory/cloud.rs",
+        "            .saturating_add(u64::from(gap_mm));",
+        "            .saturating_add(u64::from(gap_mm) * 0);",
+        "test --release -p haltline-attack --test finds beams_are_far -- --ignored",
     ),
 ];
