@@ -262,3 +262,26 @@ fn verdict(run: &RunResult, breaking: bool) -> Verdict {
 
 /// The kind that the monitor passes over in silence.
 const UNSEEN: &str = "which can move and no beam had returned";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_breaks_another_assumption_shows_something_else() {
+        let shown = |broken: &[&str]| Trial {
+            verdict: Verdict::Violated {
+                invariant: "CLAIM".to_owned(),
+                what: String::new(),
+                told: false,
+            },
+            broken: broken.iter().map(|id| (*id).to_owned()).collect(),
+            ..refused(String::new())
+        };
+        assert!(shown(&[]).shows(&shown(&[])));
+        assert!(shown(&[]).shows(&shown(&["A-START"])));
+        assert!(!shown(&["A-OBSTACLE"]).shows(&shown(&[])));
+        assert!(!shown(&["A-OBSTACLE"]).shows(&shown(&["A-START"])));
+        assert!(!refused(String::new()).shows(&shown(&[])));
+    }
+}

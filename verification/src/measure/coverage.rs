@@ -5,7 +5,7 @@ use crate::prove::tools::ProveError;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Runs the tests with counters, keeps and returns what they ran.
@@ -15,12 +15,9 @@ use std::process::Command;
 pub fn measure(root: &Path) -> Result<Coverage, ProveError> {
     let version = tool("llvm-cov")?;
     let source_sha256 = core_sha256(root)?;
-    if std::env::var_os("LLVM_COV").is_none() {
-        // The reader of counters must be as new as the compiler that writes them.
-        run(Command::new("rustup").args(["component", "add", "llvm-tools"]))?;
-    }
     let report = root.join("target/coverage.json");
     let mut command = Command::new("cargo");
+    command.envs(readers()?);
     command
         .current_dir(root)
         .args(["llvm-cov", "--release", "--json", "--summary-only"]);
@@ -52,6 +49,35 @@ pub fn measure(root: &Path) -> Result<Coverage, ProveError> {
     };
     keep(root, |measured| measured.coverage = Some(coverage.clone()))?;
     Ok(coverage)
+}
+
+/// Where the readers of counters are, which must be as new as the compiler that writes them: the toolchain's own, or
+/// those of Debian's package for the same version of LLVM, installed if need be.
+fn readers() -> Result<Vec<(&'static str, PathBuf)>, ProveError> {
+    if std::env::var_os("LLVM_COV").is_some()
+        || run(Command::new("rustup").args(["component", "add", "llvm-tools"])).is_ok()
+    {
+        return Ok(Vec::new());
+    }
+    let said = Command::new("rustc").arg("-vV").output();
+    let said = said.map_err(|error| ProveError::Words(format!("rustc -vV: {error}")))?;
+    let said = String::from_utf8_lossy(&said.stdout).into_owned();
+    let version = said
+        .lines()
+        .find_map(|line| line.strip_prefix("LLVM version: "));
+    let major = version
+        .and_then(|version| version.split('.').next())
+        .unwrap_or_default();
+    let folder = PathBuf::from(format!("/usr/lib/llvm-{major}/bin"));
+    if !folder.join("llvm-cov").exists() {
+        let package = format!("llvm-{major}");
+        println!("installing {package}");
+        run(Command::new("apt-get").args(["install", "-qy", "--no-install-recommends", &package]))?;
+    }
+    Ok(vec![
+        ("LLVM_COV", folder.join("llvm-cov")),
+        ("LLVM_PROFDATA", folder.join("llvm-profdata")),
+    ])
 }
 
 /// Lines and regions, run and all, of each file of the core.

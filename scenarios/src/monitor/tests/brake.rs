@@ -107,3 +107,42 @@ fn a_ramp_that_began_with_the_wish_to_stand_is_one_ramp() {
         assert_eq!(bench.fired().contains(&"BRAKE".to_owned()), fires, "{then}");
     }
 }
+
+#[test]
+fn a_ramp_does_not_go_on_while_the_clock_makes_up_for_a_step_back() {
+    let robot = robot();
+    // Set points at these times, us: the clock steps back by half a second after the second tick.
+    let judged = |ticks: &[(u64, f64)]| {
+        let mut monitor = super::super::brake::Brake::new();
+        for (now_us, v) in ticks {
+            let action = if *v == 0.06 {
+                Action::Pass
+            } else {
+                Action::Brake
+            };
+            let mut sent = twist(*v, 0.0);
+            (sent.action, sent.expires_us) = (action, now_us + 42_000);
+            let (given, still) = (inputs(*now_us), |_| Pose::default());
+            let tick = Tick::new(
+                (1.0, *now_us),
+                &given,
+                &sent,
+                &still,
+                (Pose::default(), true),
+            );
+            monitor.tick(&robot, &tick);
+        }
+        monitor.ledger.report.violation_count
+    };
+    let back = [
+        (1_000_000, 0.06),
+        (1_040_000, 0.039),
+        (540_000, 0.039),
+        (580_000, 0.039),
+    ];
+    assert_eq!(judged(&back), 0);
+    // What the ramp had left when the clock stepped back is all it has left once the clock has caught up.
+    let caught_up = |v: f64| [&back[..], &[(1_080_000, v)]].concat();
+    assert_eq!(judged(&caught_up(0.019)), 0);
+    assert_eq!(judged(&caught_up(0.039)), 1);
+}
