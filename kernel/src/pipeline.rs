@@ -4,7 +4,7 @@ use crate::arith::narrow;
 use crate::config::Tolerances;
 use crate::guard::hull::Vertex;
 use crate::input::Twist;
-use crate::time::Instant;
+use crate::time::{Duration, Instant};
 
 /// Number of commands kept.
 pub const HISTORY: usize = 64;
@@ -15,6 +15,8 @@ pub struct Pipeline {
     ring: [(Instant, Vertex); HISTORY],
     newest: usize,
     count: usize,
+    /// When standstill was sent after motion, the last time.
+    stopped: Option<Instant>,
 }
 
 impl Default for Pipeline {
@@ -23,6 +25,7 @@ impl Default for Pipeline {
             ring: [(Instant::default(), Vertex::default()); HISTORY],
             newest: 0,
             count: 0,
+            stopped: None,
         }
     }
 }
@@ -30,6 +33,9 @@ impl Default for Pipeline {
 impl Pipeline {
     /// Records what is sent at `now`.
     pub fn push(&mut self, now: Instant, vertex: Vertex) {
+        if self.last().twist != Twist::default() && vertex.twist == Twist::default() {
+            self.stopped = Some(now);
+        }
         let next = self.newest.saturating_add(1);
         self.newest = if next >= HISTORY { 0 } else { next };
         if let Some(slot) = self.ring.get_mut(self.newest) {
@@ -45,6 +51,13 @@ impl Pipeline {
             .next()
             .map(|(_, vertex)| *vertex)
             .unwrap_or_default()
+    }
+
+    /// Whether nothing but standstill was sent for `span` before `at`; before the first command the drive rested.
+    #[must_use]
+    pub fn has_stood(&self, at: Instant, span: Duration) -> bool {
+        let stood = |stopped| at.since(stopped).is_some_and(|passed| passed >= span);
+        self.last().twist == Twist::default() && self.stopped.is_none_or(stood)
     }
 
     fn newest_first(&self) -> impl Iterator<Item = &(Instant, Vertex)> {

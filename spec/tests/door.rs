@@ -148,7 +148,10 @@ fn what_cannot_be_certified_brakes_at_once_and_to_zero() {
 //# rest time.
 #[test]
 fn rest_is_the_whole_rest_time() {
-    let mut room = Room::new((-3.0, 20.0), (-2.0, 2.0), config());
+    // A drive that reacts at once, so that LATCH-10 has nothing to say.
+    let mut config = config();
+    config.timing.actuation_latency = Duration::ZERO;
+    let mut room = Room::new((-3.0, 20.0), (-2.0, 2.0), config);
     let _ = room.start();
     for _ in 0..20 {
         let _ = room.tick(Some((0.5, 0.0)), false);
@@ -174,6 +177,34 @@ fn rest_is_the_whole_rest_time() {
     assert!(moved > 5, "the robot was not moving");
     // 200 ms of rest at 40 ms a tick: the sixth sample at rest closes the fifth span.
     assert_eq!(resting, 6);
+}
+
+/// The emergency stop comes while a motion is on its way to a drive that still shows rest.
+//= spec/latch.md#latch-10
+//= type=test
+//# The robot MUST NOT count as resting until nothing but standstill has been sent for the actuation latency and the
+//# rest time.
+#[test]
+fn what_is_on_its_way_is_no_rest() {
+    let mut room = Room::new((-3.0, 20.0), (-2.0, 2.0), config());
+    let _ = room.start();
+    for _ in 0..20 {
+        let _ = room.tick(None, false);
+    }
+    assert!(speed(&room.tick(Some((0.5, 0.0)), false)) > 0);
+    // The drive is late: nothing has moved yet.
+    (room.pose, room.twist) = ([0.0; 3], [0.0; 2]);
+    let odometry = Reading::Value(room.odometry());
+    let inputs = Inputs {
+        emergency_stop: true,
+        odometry,
+        ..Inputs::default()
+    };
+    let stopped = room.step(&inputs);
+    assert_eq!((stopped.status, speed(&stopped)), (StopStatus::Latched, 0));
+    let released = (1..50).find(|_| room.tick(None, true).status != StopStatus::Latched);
+    // 100 ms of latency and 200 ms of rest at 40 ms a tick.
+    assert_eq!(released, Some(8));
 }
 
 /// A drive that does not follow stops the robot when the tracking window is over.

@@ -232,7 +232,8 @@ impl Seen {
         let wanted = |mm: i32| mm.div_euclid(CELL_MM).saturating_sub(half);
         let dx = wanted(robot.x).saturating_sub(self.base_x);
         let dy = wanted(robot.y).saturating_sub(self.base_y);
-        if dx.abs() <= FOLLOW_CELLS && dy.abs() <= FOLLOW_CELLS {
+        let near = |cells: i32| cells.unsigned_abs() <= FOLLOW_CELLS.unsigned_abs();
+        if near(dx) && near(dy) {
             return;
         }
         shift(&mut self.recent, dx, dy);

@@ -82,17 +82,17 @@ impl<const S: usize, const B: usize, const M: usize> Kernel<S, B, M> {
     //# whole rest time.
     pub(super) fn is_at_rest(&self) -> bool {
         let timing = &self.config.config().timing;
-        let told = self.pipeline.last().twist == crate::input::Twist::default();
-        let measured =
-            self.resting_since
-                .zip(self.track.newest())
-                .is_some_and(|(since, newest)| {
-                    newest
-                        .stamp
-                        .since(since)
-                        .is_some_and(|span| span >= timing.rest)
-                });
-        told && measured
+        let (Some(since), Some(newest)) = (self.resting_since, self.track.newest()) else {
+            return false;
+        };
+        let measured = newest.stamp.since(since);
+        //= spec/latch.md#latch-10
+        //# The robot MUST NOT count as resting until nothing but standstill has been sent for the actuation latency and
+        //# the rest time.
+        // Between two samples nobody measures: a drive that is late may have moved there.
+        let span = timing.actuation_latency.plus(timing.rest);
+        measured.is_some_and(|span| span >= timing.rest)
+            && self.pipeline.has_stood(newest.stamp, span)
     }
 
     pub(super) fn take_scan(

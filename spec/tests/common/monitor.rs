@@ -189,7 +189,7 @@ impl<'e> Monitor<'e> {
     }
 
     /// Rules about leaving a stop.
-    fn transition(&mut self, scene: &Scene<'_>, now: Instant, hazard: bool) -> Option<String> {
+    fn transition(&mut self, scene: &Scene<'_>, now: Instant, hazards: &[&str]) -> Option<String> {
         let (before, after) = (self.status, scene.decision.status);
         self.status = after;
         if scene.raw.emergency_stop {
@@ -203,7 +203,12 @@ impl<'e> Monitor<'e> {
         }
         self.released_at = now;
         self.releases += 1;
-        if hazard || !self.rested(scene) {
+        if !hazards.is_empty() {
+            return Some(format!(
+                "LATCH-03/05: released from {before:?} among {hazards:?}"
+            ));
+        }
+        if !self.rested(scene) {
             return Some(format!(
                 "LATCH-03/05: released from {before:?} without rest"
             ));
@@ -255,7 +260,7 @@ impl Tamper for Monitor<'_> {
             }
         }
         let hazard = !found.hazards.is_empty();
-        let broken = self.transition(scene, now, hazard);
+        let broken = self.transition(scene, now, &found.hazards);
         if hazard {
             self.hazard_at = Some(now);
         }

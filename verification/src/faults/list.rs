@@ -18,7 +18,7 @@ const fn fault(
 }
 
 /// Chosen by hand.
-pub(super) const CHOSEN: [Fault; 51] = [
+pub(super) const CHOSEN: [Fault; 52] = [
     fault(
         "geometry/rect.rs",
         "point.x <= self.front",
@@ -313,7 +313,13 @@ pub(super) const CHOSEN: [Fault; 51] = [
         "            .saturating_add(u64::from(gap_mm) * 0);",
         "test -p haltline --lib guard::memory",
     ),
-    // The same two again: the attacker must find them without being told where to look.
+    fault(
+        "pipeline.rs",
+        "self.stopped.is_none_or(stood)",
+        "(self.stopped.is_none_or(stood) || true)",
+        "test -p haltline-spec --release --test door",
+    ),
+    // Two of these again: the attacker must find them without being told where to look.
     fault(
         "kernel/motion.rs",
         "for sent in self.pipeline.since(since) {",

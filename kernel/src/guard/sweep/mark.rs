@@ -27,7 +27,7 @@ impl<const B: usize> Sweep<B> {
                 self.clear_mm(scanner, rules, before),
                 self.clear_mm(scanner, rules, here),
             );
-            if (first.saturating_sub(second)).abs() > rules.join_mm || first == 0 || second == 0 {
+            if first.abs_diff(second) > rules.join_mm.unsigned_abs() || first == 0 || second == 0 {
                 first = first.min(second);
                 second = first;
             }

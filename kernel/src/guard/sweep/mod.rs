@@ -297,7 +297,7 @@ impl<const B: usize> Sweep<B> {
 }
 
 fn stored(mm: i32) -> Option<i16> {
-    (mm.abs() <= STORE_MAX_MM)
+    (mm.unsigned_abs() <= STORE_MAX_MM.unsigned_abs())
         .then(|| i16::try_from(mm).ok())
         .flatten()
 }

@@ -224,3 +224,13 @@ fn every_beam_is_placed_from_the_pose_of_its_own_time() {
         assert!(off < 1.5, "beam {index}: {off} mm");
     }
 }
+
+#[test]
+fn an_anchor_that_moves_out_of_all_bounds_takes_points_out_of_all_horizons() {
+    for by in [i32::MIN, i32::MAX] {
+        let mut sweep = scan(|_| Beam::Hit(2000));
+        sweep.reanchor(AnchorShift { x_mm: by, y_mm: by });
+        let far = |point: &SweepPoint| (point.x_mm, point.y_mm) == (i16::MAX, i16::MAX);
+        assert!(sweep.points().iter().all(far));
+    }
+}
