@@ -404,11 +404,12 @@ fn a_wrong_map_stops_the_robot_or_leads_it_astray_but_into_nothing() {
     for seed in 0..5 {
         let (run, notes) = drive(By::WrongMap, seed, BLIND);
         is_clean(&run);
-        assert!(!notes.arrived && run.result.at_rest);
+        // Astray, it may still be under way when the time is over.
+        assert!(!notes.arrived);
         let lost_all_along = notes.frameless > 2_000;
         println!(
-            "seed {seed}: without a frame for {} ticks, error of the pose {:.2} m",
-            notes.frameless, notes.error_m[1]
+            "seed {seed}: without a frame for {} ticks, error of the pose {:.2} m, at rest: {}",
+            notes.frameless, notes.error_m[1], run.result.at_rest
         );
         stopped += u32::from(lost_all_along && run.result.travelled_m < 1.0);
     }
