@@ -39,9 +39,9 @@ fn mutants(standing: &Standing) -> String {
     let [tried, all] = figures.tried;
     let viable = tried - figures.unviable;
     let noticed = figures.caught + figures.timed_out;
+    let [number, count] = figures.shard;
     format!(
-        "mutants: tests notice {noticed} of {viable} changes that compile; a sample of {tried} of {all} (seed {}), {}",
-        figures.seed,
+        "mutants: tests notice {noticed} of {viable} changes that compile; {tried} of {all} tried (shard {number} of {count}), {}",
         origin(
             &figures.source_sha256,
             &figures.tool,
@@ -81,7 +81,7 @@ mod tests {
                 mutants: Some(Mutants {
                     source_sha256: "cd".repeat(32),
                     tool: "cargo-mutants 4.5.6".to_owned(),
-                    seed: 1,
+                    shard: [3, 25],
                     tried: [12, 300],
                     caught: 8,
                     timed_out: 1,
@@ -100,7 +100,7 @@ mod tests {
         assert!(
             said[0].contains("90 of 100 lines") && said[0].contains("fresh (cargo-llvm-cov 1.2.3)")
         );
-        assert!(said[1].contains("9 of 10 changes that compile; a sample of 12 of 300 (seed 1)"));
+        assert!(said[1].contains("9 of 10 changes that compile; 12 of 300 tried (shard 3 of 25)"));
         assert!(
             said[1].contains("stale") && said[1].contains("cdcdcdcd"),
             "{said:?}"

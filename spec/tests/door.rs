@@ -7,7 +7,7 @@ mod room;
 
 use haltline::config::{Config, HostDeath, MaskRect};
 use haltline::decision::{Action, Decision, Reason, StopStatus};
-use haltline::input::{Beam, Inputs, Motion, Reading, Scan};
+use haltline::input::{Beam, Inputs, Motion, Reading};
 use haltline::time::{Duration, Instant};
 use haltline::units::{Acceleration, AngularAcceleration, Length, Speed};
 use room::{Robot, Room, config, m};
@@ -27,18 +27,7 @@ fn ahead(config: Config<1>, seen: Beam) -> Decision {
     assert_eq!(driving.action, Action::Pass, "{driving:?}");
     let mut beams = room.beams();
     beams[270] = seen;
-    let scans = [Reading::Value(Scan {
-        scanner: 0,
-        stamp: Instant::from_us(room.now_us - 20_000),
-        beams: &beams,
-    })];
-    let inputs = Inputs {
-        scans: &scans,
-        odometry: Reading::Value(room.odometry()),
-        command: room.command(0.3, 0.0),
-        ..Inputs::default()
-    };
-    room.step(&inputs)
+    room.told(&beams, 20_000, Some((0.3, 0.0)), false)
 }
 
 /// Only what lies in the mask is the robot itself.
@@ -309,19 +298,7 @@ fn into_the_open(clear_m: f64) -> (f64, Vec<i16>) {
     let mut room = Room::new((-3.0, 20.0), (-2.0, 2.0), config);
     let (mut top, mut points) = (0.0_f64, Vec::new());
     for tick in 0..120 {
-        let scans = [Reading::Value(Scan {
-            scanner: 0,
-            stamp: Instant::from_us(room.now_us - 20_000),
-            beams: &[Beam::NoReturn; 541],
-        })];
-        let inputs = Inputs {
-            scans: &scans,
-            odometry: Reading::Value(room.odometry()),
-            command: room.command(1.2, 0.0),
-            emergency_stop: false,
-            reset: (tick == 10).then(|| room.now()),
-        };
-        let decision = room.step(&inputs);
+        let decision = room.told(&[Beam::NoReturn; 541], 20_000, Some((1.2, 0.0)), tick == 10);
         top = top.max(f64::from(speed(&decision)) * 1e-6);
         let verdict = decision.verdict.filter(|verdict| verdict.refusal.is_some());
         points.extend(

@@ -181,19 +181,12 @@ fn what_is_slowed_keeps_its_arc() {
     let mut room = Room::new((-6.0, 6.0), (-6.0, 6.0), config);
     let (mut slowed, mut fastest) = (0, 0);
     for tick in 0..200 {
-        let scans = [Reading::Value(Scan {
-            scanner: 0,
-            stamp: Instant::from_us(room.now_us - 20_000),
-            beams: &[Beam::NoReturn; 541],
-        })];
-        let inputs = Inputs {
-            scans: &scans,
-            odometry: Reading::Value(room.odometry()),
-            command: room.command(1.2, 0.24),
-            emergency_stop: false,
-            reset: (tick == 10).then(|| room.now()),
-        };
-        let decision = room.step(&inputs);
+        let decision = room.told(
+            &[Beam::NoReturn; 541],
+            20_000,
+            Some((1.2, 0.24)),
+            tick == 10,
+        );
         let (v, w) = twist(&decision);
         fastest = fastest.max(v);
         // From rest, through every change of factor, and down again.
@@ -253,20 +246,9 @@ fn a_jump_of_the_odometry_forgets_what_was_known() {
 fn a_scan_that_is_not_over_yet_is_from_the_future() {
     // The last beam is 20 ms younger than the stamp, that of the first.
     for (age_us, future) in [(20_000, false), (19_000, true), (1_000, true)] {
-        let room = driving(20.0, (0.3, 0.0), 30);
+        let mut room = driving(20.0, (0.3, 0.0), 30);
         let beams = room.beams();
-        let scans = [Reading::Value(Scan {
-            scanner: 0,
-            stamp: Instant::from_us(room.now_us - age_us),
-            beams: &beams,
-        })];
-        let inputs = Inputs {
-            scans: &scans,
-            odometry: Reading::Value(room.odometry()),
-            command: room.command(0.3, 0.0),
-            ..Inputs::default()
-        };
-        let decision = room.kernel.clone().step(&inputs, room.now());
+        let decision = room.told(&beams, age_us, Some((0.3, 0.0)), false);
         assert_eq!(
             decision.reason == Reason::ScanFuture,
             future,

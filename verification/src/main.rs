@@ -13,7 +13,7 @@ const USAGE: &str = "usage: haltline-verification prove [FILTER] [--engine kani|
        haltline-verification faults [FILTER] [--shard I/N]
        haltline-verification timing
        haltline-verification coverage
-       haltline-verification mutants [--sample N] [--seed S]
+       haltline-verification mutants [--shard I/N]
 
   prove    proves what the kernel's specification demands and writes verification/ledger.json;
            installs its tools itself. FILTER is a part of a proof's name.
@@ -28,8 +28,8 @@ const USAGE: &str = "usage: haltline-verification prove [FILTER] [--engine kani|
            compares them with the declared bounds (exit 1 if one is exceeded,
            3 if nothing could be measured)
   coverage lines of the safety core that its tests run, by cargo llvm-cov; writes verification/measured.json
-  mutants  small changes to the safety core, one at a time, by cargo mutants: N of them drawn by the seed
-           (40 and 1); writes verification/measured.json. Both install their tools; both exit with 3 where
+  mutants  small changes to the safety core, one at a time, by cargo mutants: every N-th of them, beginning
+           with the I-th (default 1/35, an hour); writes verification/measured.json. Both install their tools; both exit with 3 where
            nothing could be measured. A change that no test noticed is a figure, no failure";
 
 fn main() -> ExitCode {
@@ -61,17 +61,15 @@ fn main() -> ExitCode {
             let [ran, all] = measured.lines;
             format!("{ran} of {all} lines of the safety core are run by its tests")
         })),
-        ["mutants", ref rest @ ..] => match sample(rest) {
-            Some((count, seed)) => {
-                said(mutants::measure(&checkout(), count, seed).map(|measured| {
-                    let [tried, all] = measured.tried;
-                    let missed = measured.missed.join("\n  ");
-                    format!(
-                        "{tried} of {all} changes tried, missed {}:\n  {missed}",
-                        measured.missed.len()
-                    )
-                }))
-            }
+        ["mutants", ref rest @ ..] => match part(rest) {
+            Some(part) => said(mutants::measure(&checkout(), part).map(|measured| {
+                let [tried, all] = measured.tried;
+                let missed = measured.missed.join("\n  ");
+                format!(
+                    "{tried} of {all} changes tried, missed {}:\n  {missed}",
+                    measured.missed.len()
+                )
+            })),
             None => {
                 eprintln!("{USAGE}");
                 ExitCode::from(2)
@@ -102,14 +100,17 @@ fn said(measured: Result<String, ProveError>) -> ExitCode {
     }
 }
 
-/// `--sample N` and `--seed S`.
-fn sample(arguments: &[&str]) -> Option<(usize, u64)> {
-    match *arguments {
-        [] => Some((40, 1)),
-        ["--sample", count, ref rest @ ..] => Some((count.parse().ok()?, sample(rest)?.1)),
-        ["--seed", seed, ref rest @ ..] => Some((sample(rest)?.0, seed.parse().ok()?)),
-        _ => None,
-    }
+/// `--shard I/N` of the changes that `mutants` tries.
+fn part(arguments: &[&str]) -> Option<[u64; 2]> {
+    let [number, count] = match *arguments {
+        [] => return Some([1, 35]),
+        ["--shard", part] => {
+            let (number, count) = part.split_once('/')?;
+            [number.parse().ok()?, count.parse().ok()?]
+        }
+        _ => return None,
+    };
+    (1 <= number && number <= count).then_some([number, count])
 }
 
 /// `--shard I/N`, or all; and a filter.

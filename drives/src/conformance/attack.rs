@@ -10,17 +10,16 @@ use super::rig::Rig;
 use super::twins::Twin;
 use crate::arcos::{self, Command, Deframer, Packet, Sip, server};
 use crate::cola::{self, ScanTelegram};
-use crate::emulator::{Car, CarModel, Robot, Seekur, SeekurModel};
 use crate::seekur::Wheels;
 use crate::uc::command::Request;
 use crate::uc::daq::{self, Encoding, Group, Type};
 use crate::uc::{line, reply};
 
 /// A property that was broken, and where.
-type Broken = String;
+pub type Broken = String;
 
 #[track_caller]
-fn demand(holds: bool, what: &str) -> Result<(), Broken> {
+pub(super) fn demand(holds: bool, what: &str) -> Result<(), Broken> {
     if holds {
         Ok(())
     } else {
@@ -162,36 +161,6 @@ pub fn adapters(script: &[u8], twin: Option<Twin>) -> Result<(), Broken> {
     };
     against(&seekur, twin, script)?;
     against(&CarBench { stx: true }, twin, script)
-}
-
-/// Both emulators under a client that says anything: they live on, and their truth stays finite.
-///
-/// # Errors
-/// The property that does not hold.
-pub fn emulators(script: &[u8]) -> Result<(), Broken> {
-    let mut now = haltline::time::Instant::from_us(1_000_000);
-    let robots: [Box<dyn Robot>; 2] = [
-        Box::new(Seekur::new(SeekurModel::default(), now)),
-        Box::new(Car::new(CarModel::default(), now)),
-    ];
-    for mut robot in robots {
-        for part in script.chunks(7) {
-            robot.receive(part, now);
-            now = now.plus(Duration::from_ms(u64::from(
-                part.first().copied().unwrap_or(1),
-            )));
-            robot.step(now);
-            let said = robot.outgoing();
-            demand(
-                said.len() < 100_000,
-                "an emulator says what it must and no more",
-            )?;
-        }
-        let truth = robot.truth();
-        let numbers = truth.pose.iter().chain(&truth.twist);
-        demand(numbers.into_iter().all(|value| value.is_finite()), "truth")?;
-    }
-    Ok(())
 }
 
 fn against(bench: &dyn Bench, twin: Option<Twin>, script: &[u8]) -> Result<(), Broken> {

@@ -7,6 +7,7 @@
 pub mod attack;
 mod bench;
 mod checks;
+pub mod clients;
 mod curves;
 mod hostile;
 mod own;

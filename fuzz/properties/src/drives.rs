@@ -5,7 +5,8 @@ use crate::{Draw, Property};
 use haltline_drives::arcos::frame::checksum;
 use haltline_drives::cola::decode_scan;
 use haltline_drives::conformance::Twin;
-use haltline_drives::conformance::attack;
+use haltline_drives::conformance::{attack, clients};
+use haltline_drives::emulator::{CarModel, SeekurModel};
 use haltline_drives::uc::reply::error_code;
 
 pub const ARCOS: Property = Property {
@@ -73,6 +74,36 @@ pub const ADAPTERS: Property = Property {
     })],
     draw: noise::<10, 250>,
     cases: 1500,
+};
+
+pub const EMULATORS: Property = Property {
+    name: "emulators",
+    judge: |bytes| clients::emulators(bytes, SeekurModel::default(), CarModel::default()),
+    twins: &[
+        ("a watchdog that only warns", |bytes| {
+            let seekur = SeekurModel {
+                ignores_watchdog: true,
+                ..SeekurModel::default()
+            };
+            clients::emulators(bytes, seekur, CarModel::default())
+        }),
+        ("a dead-man switch without effect", |bytes| {
+            let car = CarModel {
+                ignores_dead_man: true,
+                ..CarModel::default()
+            };
+            clients::emulators(bytes, SeekurModel::default(), car)
+        }),
+        ("turns faster than its limit", |bytes| {
+            let seekur = SeekurModel {
+                skid: 1.2,
+                ..SeekurModel::default()
+            };
+            clients::emulators(bytes, seekur, CarModel::default())
+        }),
+    ],
+    draw: noise::<8, 256>,
+    cases: 600,
 };
 
 /// One of the beginnings, then anything.

@@ -80,6 +80,7 @@ pub const ALL: &[Property] = &[
     drives::UC,
     drives::COLA,
     drives::ADAPTERS,
+    drives::EMULATORS,
 ];
 
 /// What a fuzz target does with its bytes: a broken property ends the process.

@@ -99,5 +99,5 @@ macro_rules! properties {
 
 properties! {
     guard stops latch inputs navigate grid ekf arc plan robot scenario marker_map barn sena carmen mrclam pgm yaml
-    record arcos uc cola adapters
+    record arcos uc cola adapters emulators
 }

@@ -170,14 +170,23 @@ impl Room {
 
     /// One tick with fresh inputs; the robot then executes the set point for one period.
     pub fn tick(&mut self, command: Option<(f64, f64)>, reset: bool) -> Decision {
-        let command = command.map_or(Reading::Absent, |(v, w)| {
-            convert::twist_command(self.now(), v, w)
-        });
         let beams = self.beams();
+        self.told(&beams, 20_000, command, reset)
+    }
+
+    /// As [`Self::tick`] with a scan that says this and is so old, µs.
+    pub fn told(
+        &mut self,
+        beams: &[Beam],
+        age_us: u64,
+        command: Option<(f64, f64)>,
+        reset: bool,
+    ) -> Decision {
+        let command = command.map_or(Reading::Absent, |(v, w)| self.command(v, w));
         let scan = Scan {
             scanner: 0,
-            stamp: Instant::from_us(self.now_us - 20_000),
-            beams: &beams,
+            stamp: Instant::from_us(self.now_us - age_us),
+            beams,
         };
         let scans = [Reading::Value(scan)];
         let inputs = Inputs {

@@ -1,10 +1,8 @@
 //! What arrives from a planner, or does not.
 
-use crate::room::Room;
 use crate::{driving, speed};
 use haltline::decision::{Action, Reason};
-use haltline::input::{Inputs, Motion, Reading, Scan};
-use haltline::time::Instant;
+use haltline::input::Motion;
 
 /// #4555: the monitor runs only when a command arrives, so a silent planner leaves the last command in force.
 #[test]
@@ -19,23 +17,6 @@ fn a_silent_planner_stops_the_robot() {
     assert!(speed(&last.unwrap()).abs() < 1e-9 && room.twist[0].abs() < 1e-9);
 }
 
-fn with_command(room: &mut Room, v: f64, w: f64) -> haltline::decision::Decision {
-    let beams = room.beams();
-    let stamp = Instant::from_us(room.now_us - 20_000);
-    let scans = [Reading::Value(Scan {
-        scanner: 0,
-        stamp,
-        beams: &beams,
-    })];
-    let inputs = Inputs {
-        scans: &scans,
-        odometry: Reading::Value(room.odometry()),
-        command: room.command(v, w),
-        ..Inputs::default()
-    };
-    room.step(&inputs)
-}
-
 /// #3627, #3658: a NaN command is ignored, and the base keeps its last one.
 #[test]
 fn a_command_that_is_no_number_brakes_in_the_same_tick() {
@@ -47,7 +28,7 @@ fn a_command_that_is_no_number_brakes_in_the_same_tick() {
     ] {
         let mut room = driving(0.5);
         let naive = room.twist[0];
-        let decision = with_command(&mut room, v, w);
+        let decision = room.tick(Some((v, w)), false);
         assert!(decision.action >= Action::Brake, "{v} {w}: {decision:?}");
         assert!(speed(&decision) < naive - 0.01, "{v} {w}: {decision:?}");
     }
@@ -58,7 +39,7 @@ fn a_command_that_is_no_number_brakes_in_the_same_tick() {
 fn a_failing_planner_ends_at_exactly_zero() {
     let mut room = driving(0.5);
     for _ in 0..60 {
-        let _ = with_command(&mut room, f64::NAN, f64::NAN);
+        let _ = room.tick(Some((f64::NAN, f64::NAN)), false);
     }
     assert!(room.twist[0].abs() < 1e-9, "{:?}", room.twist);
 }
@@ -68,7 +49,7 @@ fn a_failing_planner_ends_at_exactly_zero() {
 fn a_speed_beyond_all_limits_is_never_passed_on() {
     let mut room = driving(0.5);
     for wish in [(5.0, 0.0), (0.5, 9.0), (-0.5, 0.0)] {
-        let decision = with_command(&mut room, wish.0, wish.1);
+        let decision = room.tick(Some((wish.0, wish.1)), false);
         assert!(decision.action >= Action::Slow, "{wish:?}: {decision:?}");
         let Motion::Twist(sent) = decision.setpoint else {
             panic!("{decision:?}");

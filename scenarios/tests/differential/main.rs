@@ -15,8 +15,7 @@ mod readings;
 mod simulated;
 
 use haltline::decision::{Action, Decision};
-use haltline::input::{Beam, Inputs, Motion, Reading, Scan};
-use haltline::time::Instant;
+use haltline::input::{Beam, Motion};
 use room::Room;
 
 /// Forward speed of a decision, m/s.
@@ -41,17 +40,5 @@ fn driving(v: f64) -> Room {
 
 /// A tick with these beams and the wish to go on as before.
 fn with_beams(room: &mut Room, beams: &[Beam], v: f64) -> Decision {
-    let stamp = Instant::from_us(room.now_us - 20_000);
-    let scans = [Reading::Value(Scan {
-        scanner: 0,
-        stamp,
-        beams,
-    })];
-    let inputs = Inputs {
-        scans: &scans,
-        odometry: Reading::Value(room.odometry()),
-        command: room.command(v, 0.0),
-        ..Inputs::default()
-    };
-    room.step(&inputs)
+    room.told(beams, 20_000, Some((v, 0.0)), false)
 }

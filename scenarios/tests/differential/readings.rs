@@ -39,20 +39,7 @@ fn infinite_ranges_clear_no_more_than_is_vouched_for() {
     let mut room = Room::new((-3.0, 12.0), (-2.0, 2.0), deaf);
     let mut furthest = 0.0_f64;
     for tick in 0..400 {
-        let beams = beams(f32::INFINITY);
-        let scans = [Reading::Value(Scan {
-            scanner: 0,
-            stamp: Instant::from_us(room.now_us - 20_000),
-            beams: &beams,
-        })];
-        let inputs = Inputs {
-            scans: &scans,
-            odometry: Reading::Value(room.odometry()),
-            command: room.command(0.5, 0.0),
-            reset: (tick == 10).then(|| room.now()),
-            ..Inputs::default()
-        };
-        let _ = room.step(&inputs);
+        let _ = room.told(&beams(f32::INFINITY), 20_000, Some((0.5, 0.0)), tick == 10);
         furthest = furthest.max(room.pose[0]);
     }
     // The disc that the operator vouched for at the reset.

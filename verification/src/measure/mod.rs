@@ -79,8 +79,8 @@ pub struct Mutants {
     pub source_sha256: String,
     /// Tools with their versions.
     pub tool: String,
-    /// Seed of the sample.
-    pub seed: u64,
+    /// Number of the shard, from 1, and how many there are.
+    pub shard: [u64; 2],
     /// Changes tried, and all that the tool knows.
     pub tried: [u64; 2],
     /// A test failed.
