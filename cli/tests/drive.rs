@@ -206,6 +206,18 @@ fn a_reckless_planner_is_stopped_before_the_wall() {
     assert!(stderr(&output).contains("standard input:21: \"fast please\" is no command"));
 }
 
+/// Reads until a line has these words.
+fn wait_for(text: &mut impl BufRead, words: &str) {
+    let mut line = String::new();
+    while !line.contains(words) {
+        line.clear();
+        assert!(
+            text.read_line(&mut line).expect("text") > 0,
+            "it ended before `{words}`"
+        );
+    }
+}
+
 /// Two hosts on one line would mix their bytes: the second is told who is to blame.
 #[test]
 fn a_port_that_another_program_holds_is_an_error() {
@@ -221,11 +233,7 @@ fn a_port_that_another_program_holds_is_an_error() {
         .spawn()
         .expect("starts");
     let mut said = BufReader::new(first.stdout.take().expect("piped"));
-    let mut line = String::new();
-    while !line.contains("driving") {
-        line.clear();
-        assert!(said.read_line(&mut line).expect("a line") > 0, "it ended");
-    }
+    wait_for(&mut said, "driving");
     let args = ["drive", &robot, "--port", &emulator.port];
     let output = haltline(&[&args[..], &["--scan-from", &emulator.scan, "--shield"]].concat());
     expect_exit(&output, 2);
@@ -268,17 +276,10 @@ fn a_robot_that_was_lost_and_found_waits_for_a_reset() {
     std::thread::sleep(Duration::from_millis(1500));
     // The robot is silent for longer than the link may be.
     tell("-STOP");
-    let mut line = String::new();
-    while !line.contains("silent") {
-        line.clear();
-        assert!(err.read_line(&mut line).expect("text") > 0, "it ended");
-    }
+    wait_for(&mut err, "silent");
     std::thread::sleep(Duration::from_millis(3000));
     tell("-CONT");
-    while !line.contains("write reset and Enter") {
-        line.clear();
-        assert!(err.read_line(&mut line).expect("text") > 0, "it ended");
-    }
+    wait_for(&mut err, "write reset and Enter");
     // Nobody may be left to read the rest.
     let rest = std::thread::spawn(move || {
         let mut text = String::new();
