@@ -168,7 +168,10 @@ fn milder(setting: &Setting, found: &Found) -> (String, Option<f64>) {
     let Some(broken) = &found.plan.broken else {
         return (text, None);
     };
-    let (mut kept, mut low, mut high) = (text, 1.0, broken.severity);
+    let Some(severity) = broken.severity else {
+        return (text, None);
+    };
+    let (mut kept, mut low, mut high) = (text, 1.0, severity);
     for _ in 0..8 {
         let middle = (low + high) / 2.0;
         let plan = compose(setting, found.structure, &found.genes, Some(middle));

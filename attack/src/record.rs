@@ -74,7 +74,9 @@ pub struct Find {
     pub words: String,
     /// Robustness of the run.
     pub robustness: f64,
-    /// Times what is assumed, where an assumption is broken.
+    /// Whether an assumption was broken on purpose; else a claim is violated.
+    pub breaks: bool,
+    /// Times what is assumed, where an assumption is broken that has a size.
     pub severity: Option<f64>,
     /// File beside `attack.json`.
     pub file: String,
@@ -116,12 +118,13 @@ impl Record {
 
     /// Takes in a find; of broken assumptions only the least break is kept. Says whether it was kept.
     pub fn find(&mut self, find: Find) -> bool {
-        if find.severity.is_none() {
+        if !find.breaks {
             self.violations.push(find);
             return true;
         }
         let known = self.broken.get(&find.what);
-        let better = known.is_none_or(|known| find.severity < known.severity);
+        let size = |find: &Find| find.severity.unwrap_or(1.0);
+        let better = known.is_none_or(|known| size(&find) < size(known));
         if better {
             self.broken.insert(find.what.clone(), find);
         }

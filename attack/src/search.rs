@@ -121,7 +121,8 @@ impl State<'_> {
             return found.trial.towards(self.objective);
         }
         let plan = compose(self.setting, structure, genes, None);
-        let trial = trial::run(self.setting, &plan.text);
+        let mut trial = trial::run(self.setting, &plan.text);
+        trial.expect(plan.broken.as_ref().map(|broken| broken.id.as_str()));
         let robustness = trial.towards(self.objective);
         self.count(&plan, &trial);
         if trial.verdict.found() {

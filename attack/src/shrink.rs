@@ -1,7 +1,7 @@
 //! Makes a found scenario small: whatever can go, goes; whatever can be a rounder number, becomes one.
 
 use crate::setting::Setting;
-use crate::trial::{self, Trial};
+use crate::trial::{self, Trial, Verdict};
 use toml::{Table, Value};
 
 /// Runs spent on one scenario at most.
@@ -32,10 +32,13 @@ pub fn shrink(setting: &Setting, text: &str, shown: &Trial) -> (String, usize) {
         let text = toml::to_string(candidate).unwrap_or_default();
         trial::run(setting, &text).shows(shown)
     };
+    let breaks = matches!(shown.verdict, Verdict::Broken { .. });
     loop {
         let before = best.clone();
-        removed(&mut best, &mut keeps);
-        rounder(&mut best, &mut keeps);
+        removed(&mut best, breaks, &mut keeps);
+        if !breaks {
+            rounder(&mut best, &mut keeps);
+        }
         if best == before {
             break;
         }
@@ -58,15 +61,25 @@ const FIXED: [&str; 9] = [
 ];
 
 /// Removes elements of lists and keys of tables, the last first, as long as the verdict stays.
-fn removed(best: &mut Value, keeps: &mut impl FnMut(&Value) -> bool) {
+fn removed(best: &mut Value, breaks: bool, keeps: &mut impl FnMut(&Value) -> bool) {
     let mut all = paths(best);
     all.reverse();
-    for path in all {
+    for path in all.iter().filter(|path| !breaks || !is_a_break(path)) {
         let mut candidate = best.clone();
-        if remove(&mut candidate, &path) && keeps(&candidate) {
+        if remove(&mut candidate, path) && keeps(&candidate) {
             *best = candidate;
         }
     }
+}
+
+/// Whether how far an assumption is broken may hang on this place; it stays, and no number is rounded, so that the
+/// file breaks it as far as is said. Whole faults may go.
+fn is_a_break(path: &Path) -> bool {
+    let first = match path.first() {
+        Some(Step::Key(key)) => key.as_str(),
+        _ => "",
+    };
+    matches!(first, "sensor" | "odometry" | "drive") || (first == "fault" && path.len() > 2)
 }
 
 /// Rounds numbers to fewer decimals.

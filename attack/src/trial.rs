@@ -1,10 +1,11 @@
 //! One scenario run, and how near it came to a violation.
 
 use crate::setting::Setting;
+use haltline_scenarios::assumption::START;
 use haltline_scenarios::batch::{Case, equip, run_one};
 use haltline_scenarios::file::parse;
-use haltline_scenarios::monitor::{BUMPED, EXCUSED, FORGOTTEN, OUT_OF_SIGHT};
-use haltline_scenarios::result::RunResult;
+use haltline_scenarios::monitor::{UNSEEN, is_outside};
+use haltline_scenarios::result::{Contact, RunResult};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What a run showed.
@@ -96,6 +97,17 @@ impl Trial {
     pub fn shows(&self, other: &Self) -> bool {
         let keeps = |id: &String| other.broken.contains(id);
         self.verdict.same(&other.verdict) && self.broken.iter().all(keeps)
+    }
+
+    /// What another assumption explains than the one broken on purpose is no find.
+    pub fn expect(&mut self, drawn: Option<&str>) {
+        if let Verdict::Broken { id, what } = &self.verdict
+            && drawn != Some(id)
+        {
+            let (why, what) = (id.clone(), what.clone());
+            self.verdict = Verdict::Excused { why, what };
+            self.robustness = NOTHING;
+        }
     }
 
     /// The signed distance that a search for this invariant makes smaller; `CLAIM` is a contact.
@@ -190,9 +202,7 @@ fn refused(message: String) -> Trial {
 fn judged(run: &RunResult, trace: String, breaking: bool) -> Trial {
     let verdict = verdict(run, breaking);
     let clearance_m = run.min_clearance_moving_m.unwrap_or(NOTHING);
-    let speed = |contact: &haltline_scenarios::result::Contact| {
-        contact.v_mps.abs().max(contact.omega_radps.abs() * 0.5)
-    };
+    let speed = |contact: &Contact| contact.v_mps.abs().max(contact.omega_radps.abs() * 0.5);
     let contacts = run.contacts.iter().filter(|contact| contact.robot_moving);
     let fastest = contacts.map(speed).fold(0.0, f64::max);
     let robustness = match &verdict {
@@ -215,15 +225,12 @@ fn judged(run: &RunResult, trace: String, breaking: bool) -> Trial {
     }
 }
 
-/// Kinds of contacts of which the claim does not speak, as the monitor says them; it is stricter than the claim, so that
-/// scenarios show them (CAVEATS.md).
-const OUTSIDE: [&str; 4] = [BUMPED, EXCUSED, FORGOTTEN, OUT_OF_SIGHT];
-
+/// Contacts of which the claim does not speak are no find, although the monitor says them: it is stricter than the claim,
+/// so that scenarios show them (CAVEATS.md).
 fn verdict(run: &RunResult, breaking: bool) -> Verdict {
-    let outside = |what: &str| OUTSIDE.iter().find(|words| what.contains(**words));
     let objection = run.monitors.iter().find_map(|monitor| {
         let mut violations = monitor.violations.iter();
-        let first = violations.find(|one| outside(&one.what).is_none())?;
+        let first = violations.find(|one| !is_outside(&one.what))?;
         Some((
             monitor.id.clone(),
             format!("at {:.2} s {}", first.t_s, first.what),
@@ -236,32 +243,37 @@ fn verdict(run: &RunResult, breaking: bool) -> Verdict {
             told: false,
         };
     }
-    let Some(contact) = run.contacts.iter().find(|contact| contact.robot_moving) else {
+    let moving = run.contacts.iter().filter(|contact| contact.robot_moving);
+    let mut explained: Vec<Verdict> = moving.map(|one| explained(run, one, breaking)).collect();
+    let found = explained.iter().position(Verdict::found).unwrap_or(0);
+    if explained.is_empty() {
         return Verdict::Clean;
-    };
-    if let Some(broken) = run.assumptions_broken.first() {
-        let (id, what) = (broken.id.clone(), broken.what.clone());
-        return match breaking {
-            true => Verdict::Broken { id, what },
-            false => Verdict::Excused { why: id, what },
-        };
     }
-    let mut objections = run.monitors.iter().flat_map(|monitor| &monitor.violations);
-    let named = objections.find_map(|one| Some((outside(&one.what)?, one.what.clone())));
-    named.map_or_else(
-        || Verdict::Excused {
-            why: UNSEEN.to_owned(),
-            what: format!("{} can move and was never seen", contact.body),
-        },
-        |(why, what)| Verdict::Excused {
-            why: (*why).to_owned(),
-            what,
-        },
-    )
+    explained.swap_remove(found)
 }
 
-/// The kind that the monitor passes over in silence.
-const UNSEEN: &str = "which can move and no beam had returned";
+/// A contact to which no monitor objects. It is laid to what was broken on purpose if nothing else explains it.
+fn explained(run: &RunResult, contact: &Contact, breaking: bool) -> Verdict {
+    if let Some(why) = &contact.outside {
+        let (why, what) = (why.clone(), format!("{} {why}", contact.body));
+        return Verdict::Excused { why, what };
+    }
+    let mut ids = contact.assumptions.iter();
+    let Some(id) = contact.assumptions.first() else {
+        // Nothing explains it and nobody objects: it began as one that a monitor had passed over.
+        return Verdict::Excused {
+            why: UNSEEN.to_owned(),
+            what: format!("{} {UNSEEN}", contact.body),
+        };
+    };
+    let words = run.assumptions_broken.iter().find(|one| one.id == *id);
+    let (id, what) = (id.clone(), words.map_or(String::new(), |w| w.what.clone()));
+    // Nobody breaks the operator's word on purpose.
+    if breaking && id != START && ids.all(|other| *other == id) {
+        return Verdict::Broken { id, what };
+    }
+    Verdict::Excused { why: id, what }
+}
 
 #[cfg(test)]
 mod tests {

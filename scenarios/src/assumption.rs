@@ -50,6 +50,9 @@ impl Broken {
     }
 }
 
+/// What the operator vouches for at a reset.
+pub const START: &str = "A-START";
+
 /// Margin for comparing decimal numbers from two files.
 const EPSILON: f64 = 1e-9;
 
@@ -244,7 +247,6 @@ fn fault_break(
         | FaultKind::ScanJitter
         | FaultKind::ScanWrapped
         | FaultKind::OdometryFuture
-        | FaultKind::CommandFuture
         | FaultKind::ClockForwards
         | FaultKind::ClockBackwards => ("A-CLOCK", "stamps and clock do not agree"),
         FaultKind::HostDeath => return host_death_break(robot, drive),

@@ -77,18 +77,22 @@ pub struct Stop {
 /// Footprint and a body began to overlap.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Contact {
-    /// First dynamics step of the overlap.
+    /// First dynamics step of the overlap at which the robot moved; if it never did, the first of all.
     pub t_s: f64,
     /// Name of the body.
     pub body: String,
     /// Whether the robot moved (above its rest thresholds) at any step of the overlap.
     pub robot_moving: bool,
-    /// Forward speed at the first step.
+    /// Forward speed at that step.
     pub v_mps: f64,
-    /// Turn rate at the first step.
+    /// Turn rate at that step.
     pub omega_radps: f64,
-    /// Pose at the first step.
+    /// Pose at that step.
     pub pose: PoseRecord,
+    /// Ids of the broken assumptions that could explain it, if the robot was guarded and moved.
+    pub assumptions: Vec<String>,
+    /// Why the claim does not speak of it, if it does not: one of the words of [`crate::monitor`].
+    pub outside: Option<String>,
 }
 
 /// Outline of a body in its own frame.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use haltline_robots::Robot;
 use haltline_scenarios::batch::{equip, run_one};
 use haltline_scenarios::catalogue::{CATALOGUE, Fault, How, table};
-use haltline_scenarios::file::fault::KINDS;
+use haltline_scenarios::file::fault::{FaultKind, KINDS};
 use haltline_scenarios::file::load_file;
 
 fn root() -> PathBuf {
@@ -43,6 +43,36 @@ fn every_fault_is_shown_where_the_catalogue_says() {
             }
             None => shown_by_file(fault),
         }
+    }
+}
+
+/// A fault that changes nothing shows nothing.
+#[test]
+fn every_fault_has_an_effect_where_it_is_shown() {
+    for fault in CATALOGUE {
+        let How::Kind(kind) = fault.how else {
+            continue;
+        };
+        // That a scan which comes twice changes nothing is what its scenario shows.
+        if fault.shown.contains("::") || kind == FaultKind::ScanDuplicated {
+            continue;
+        }
+        let [with, without] = [false, true].map(|sound| {
+            let path = root().join(format!("scenarios/files/{}.toml", fault.shown));
+            let mut scenario = load_file(&path).expect("it is good").remove(0);
+            if sound {
+                scenario.fault.retain(|entry| entry.get_ref().kind != kind);
+            }
+            let robot = Robot::embedded(&scenario.robot).expect("a shipped robot");
+            let case = equip(scenario, &robot).expect("it fits");
+            run_one(&case, true).expect("the kernel takes it").trace
+        });
+        assert!(
+            with != without,
+            "{} does nothing in {}",
+            fault.what,
+            fault.shown
+        );
     }
 }
 

@@ -38,6 +38,16 @@ pub(super) fn harmless(dice: &mut Dice, genes: &mut Genes<'_>, table: &mut Table
     add(*kind, genes.between(0.05, 6.0), genes, table);
 }
 
+/// Whether [`add`] makes something of its `size`.
+pub(super) fn has_size(kind: FaultKind) -> bool {
+    kind.needs_offset()
+        || kind.needs_factor()
+        || matches!(
+            kind,
+            FaultKind::RangesQuantised | FaultKind::ScanRotated | FaultKind::OdometryJump
+        )
+}
+
 /// Adds a fault of a kind; the larger `size`, the worse.
 pub(super) fn add(kind: FaultKind, size: f64, genes: &mut Genes<'_>, table: &mut Table) {
     let from_s = genes.between(0.5, 6.0);

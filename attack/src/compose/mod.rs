@@ -56,8 +56,8 @@ pub struct Broken {
     pub id: String,
     /// Its id, and by which fault of the catalogue if by one.
     pub name: String,
-    /// How far: times what is assumed where that is a number, else the size of the fault.
-    pub severity: f64,
+    /// How far: times what is assumed where that is a number, else the size of the fault; none where it has no size.
+    pub severity: Option<f64>,
 }
 
 /// How long a run lasts, seconds.
@@ -138,7 +138,7 @@ fn tables(
     let broken = breach.zip(factor).map(|(breach, severity)| Broken {
         id: breach.id().to_owned(),
         name: breach.name(),
-        severity,
+        severity: Some(severity).filter(|_| breach.has_size()),
     });
     expectations(&mut table, broken.as_ref());
     (table, family, broken)

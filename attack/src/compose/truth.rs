@@ -205,6 +205,15 @@ impl Breach {
         }
     }
 
+    /// Whether it can be broken by more or by less.
+    pub(super) fn has_size(self) -> bool {
+        match self {
+            Self::Visible => false,
+            Self::Fault(kind, _) => fault::has_size(kind),
+            _ => true,
+        }
+    }
+
     /// Id in `spec/assumptions.md`.
     pub(super) const fn id(self) -> &'static str {
         match self {

@@ -14,8 +14,14 @@ pub(super) fn merge(folders: &[PathBuf], out: &Path) -> Result<Exit, Failure> {
     let mut finds: Vec<(PathBuf, Find)> = Vec::new();
     for folder in folders {
         let record = read(folder)?;
-        let all = record.violations.iter().chain(record.broken.values());
-        finds.extend(all.map(|find| (folder.clone(), find.clone())));
+        for find in record.violations.iter().chain(record.broken.values()) {
+            // What a record says is a name in its own folder, never a way out of it.
+            if Path::new(&find.file).file_name() != Some(find.file.as_ref()) {
+                let why = format!("`{}` is no file name", find.file);
+                return Err(Failure::input(format!("{}: {why}", folder.display())));
+            }
+            finds.push((folder.clone(), find.clone()));
+        }
         joined = Some(match joined {
             None => record,
             Some(mut whole) => {

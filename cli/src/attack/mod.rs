@@ -83,6 +83,12 @@ fn finish(record: &Record, out: &Path) -> Result<Exit, Failure> {
     write_whole(&path, text.as_bytes())?;
     words::summary(record, out);
     say!("wrote {}", path.display());
+    if record.moving == 0 {
+        return Err(Failure::input(
+            "no motion was ever accepted, so nothing was tried: look at --set and --told, or at the robot file with \
+             `haltline certify`",
+        ));
+    }
     Ok(if record.violations.is_empty() {
         Exit::Holds
     } else {
@@ -98,17 +104,17 @@ fn keep(
     (out, replay): (&Path, &str),
     bar: &ProgressBar,
 ) -> Result<(), Failure> {
-    let (what, words) = match &find.trial.verdict {
+    let (breaks, what, words) = match &find.trial.verdict {
         Verdict::Violated {
             invariant, what, ..
-        } => (invariant.clone(), what.clone()),
+        } => (false, invariant.clone(), what.clone()),
         Verdict::Broken { id, what } => {
             let name = find.broken.clone().unwrap_or_else(|| id.clone());
-            (name, what.clone())
+            (true, name, what.clone())
         }
         _ => return Ok(()),
     };
-    let stem = if find.severity.is_some() {
+    let stem = if breaks {
         what.to_lowercase().replace(['-', ' '], "_")
     } else {
         "counterexample".to_owned()
@@ -119,6 +125,7 @@ fn keep(
         what: what.clone(),
         words: words.clone(),
         robustness: find.trial.robustness,
+        breaks,
         severity: find.severity,
         file: file.clone(),
         trace_sha256: sha256(find.trial.trace.as_bytes()),

@@ -76,10 +76,12 @@ pub(super) fn summary(record: &Record, out: &Path) {
         say!("  nearest to a violation: {}", nearest(record));
     }
     for (id, find) in &record.broken {
+        let from = find.severity.map_or(String::new(), |severity| {
+            format!(" from {severity:.2} times what is assumed on")
+        });
         say!(
-            "  {} {id}: contact from {:.2} times what is assumed on ({}): {}",
+            "  {} {id}: contact{from} ({}): {}",
             style("assumption broken").yellow(),
-            find.severity.unwrap_or(1.0),
             find.words,
             out.join(&find.file).display()
         );

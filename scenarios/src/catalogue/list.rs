@@ -212,7 +212,7 @@ pub const CATALOGUE: &[Fault] = &[
         "time",
         "commands from the future",
         F::CommandFuture,
-        CLOCK,
+        None,
         "input_command_future",
     ),
     fault(

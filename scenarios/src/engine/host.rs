@@ -5,13 +5,12 @@ use haltline_robots::Robot;
 
 use super::Engine;
 use super::operator::{Operator, Route};
-use crate::assumption::Broken;
 use crate::controller::{Controller, TickInputs, set_point, tick};
 use crate::drive::SetPoint;
 use crate::faults::Faults;
 use crate::file::Scenario;
 use crate::math::{microseconds, seconds};
-use crate::monitor::{DecisionRecord, Monitors, Standing, Tick, Touch};
+use crate::monitor::{DecisionRecord, Judged, Monitors, Standing, Tick, Touch};
 use crate::navigation::NavigationRecord;
 use crate::proposer::{Driver, RawCommand};
 use crate::result::RunResult;
@@ -178,7 +177,8 @@ impl<'a> Host<'a> {
             && record.status == StopStatus::Running
             && inputs.reset_us.is_some()
         {
-            engine.vouch(t_us);
+            let bodies = engine.vouch(t_us);
+            self.monitors.vouched(&bodies);
         }
         self.decision = Some(record);
         record.set_point
@@ -252,10 +252,22 @@ impl<'a> Host<'a> {
     }
 
     /// A moving robot began to overlap a body.
-    pub(super) fn touch(&mut self, touch: Touch, broken: &[Broken]) {
-        if self.controller.is_some() {
-            self.monitors.touch(touch, broken);
+    pub(super) fn touch(&mut self, t_us: u64, body: usize, engine: &Engine<'_>) -> Judged {
+        if self.controller.is_none() {
+            return Judged::default();
         }
+        let pose = engine.pose();
+        let stood = self.monitors.settled_s().is_some_and(|then_s| {
+            let distances = engine.judge.distances(&engine.world, &pose, then_s);
+            distances.get(body).is_some_and(|distance| *distance <= 0.0)
+        });
+        let touch = Touch {
+            t_s: seconds(t_us),
+            body,
+            pose,
+            stood,
+        };
+        self.monitors.touch(touch, &engine.broken)
     }
 
     /// What the run leaves behind on this side: monitor reports, memory in the world, navigation.

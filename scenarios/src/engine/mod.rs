@@ -89,8 +89,8 @@ pub fn run(scenario: &Scenario, robot: &Robot, controller: Option<Box<dyn Contro
         let distances = engine.distances(t_us);
         let moving = engine.moving();
         let touches = recorder.step(t_us, &engine, &host, &distances, moving);
-        for touch in touches {
-            host.touch(touch, &engine.broken);
+        for body in touches {
+            recorder.judged(body, host.touch(t_us, body, &engine));
         }
         let reached = engine.reached(t_us);
         if reached || t_us >= end_us {

@@ -3,7 +3,7 @@
 use super::{Engine, STEP_US};
 use crate::engine::host::Host;
 use crate::math::{Pose, seconds, wrap};
-use crate::monitor::Touch;
+use crate::monitor::Judged;
 use crate::result::{Contact, DecisionChange, RunResult, Sample, Stop, WorldRecord};
 use crate::trace::{TraceStep, push_line};
 use crate::world::{Body, pose_record};
@@ -46,7 +46,7 @@ impl Recorder {
         host: &Host<'_>,
         distances: &[f64],
         moving: bool,
-    ) -> Vec<Touch> {
+    ) -> Vec<usize> {
         let (t_s, pose) = (seconds(t_us), engine.pose());
         let clearance = distances.iter().copied().reduce(f64::min);
         self.decision(t_s, &pose, host);
@@ -132,7 +132,7 @@ impl Recorder {
         engine: &Engine<'_>,
         distances: &[f64],
         moving: bool,
-    ) -> Vec<Touch> {
+    ) -> Vec<usize> {
         let [v_mps, omega_radps] = engine.drive.ground();
         let mut touches = Vec::new();
         for (body, distance) in distances.iter().enumerate() {
@@ -152,6 +152,8 @@ impl Recorder {
                     v_mps,
                     omega_radps,
                     pose: pose_record(&engine.pose()),
+                    assumptions: Vec::new(),
+                    outside: None,
                 });
             }
             if let Some(contact) = self.result.contacts.get_mut(index)
@@ -159,10 +161,21 @@ impl Recorder {
                 && !contact.robot_moving
             {
                 contact.robot_moving = true;
-                touches.push(Touch { t_s, body });
+                (contact.t_s, contact.v_mps, contact.omega_radps) = (t_s, v_mps, omega_radps);
+                contact.pose = pose_record(&engine.pose());
+                touches.push(body);
             }
         }
         touches
+    }
+
+    /// What the monitors say of the contact with `body` that has just begun in motion.
+    pub(super) fn judged(&mut self, body: usize, judged: Judged) {
+        let open = self.open.get(body).copied().flatten();
+        if let Some(contact) = open.and_then(|index| self.result.contacts.get_mut(index)) {
+            contact.assumptions = judged.assumptions;
+            contact.outside = judged.outside.map(str::to_owned);
+        }
     }
 
     pub(super) fn finish(

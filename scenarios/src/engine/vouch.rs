@@ -1,7 +1,7 @@
 //! A-START: what the operator vouches for at a reset, and what stands there all the same.
 
 use super::Engine;
-use crate::assumption::Broken;
+use crate::assumption::{Broken, START};
 use crate::math::{Pose, seconds};
 use crate::sensor::{RawScan, beam_time_us};
 
@@ -15,12 +15,13 @@ struct Return {
 }
 
 impl Engine<'_> {
-    /// Notes whom the operator's word does not fit.
+    /// Notes whom the operator's word does not fit, and returns them.
     ///
     /// It is given for a disc, but no farther than the nearest return of the newest scans less their error: any part of
     /// a body inside that disc breaks A-START. It is given for the skirt around the footprint, too: a body breaks it
     /// that reaches into the skirt with a part that no beam returned.
-    pub(super) fn vouch(&mut self, t_us: u64) {
+    pub(super) fn vouch(&mut self, t_us: u64) -> Vec<usize> {
+        let mut bodies = Vec::new();
         let (pose, t_s) = (self.pose(), seconds(t_us));
         let memory = &self.robot.values.memory;
         let returns: Vec<Return> = self
@@ -56,13 +57,15 @@ impl Engine<'_> {
             } else {
                 continue;
             };
+            bodies.push(index);
             self.broken.push(Broken {
-                id: "A-START",
+                id: START,
                 what: format!("{} stands {what}", body.name),
                 body: Some(index),
                 from_s: t_s,
             });
         }
+        bodies
     }
 
     /// Where the beams of a scan came back from.

@@ -17,7 +17,8 @@ impl Input {
         }
     }
 
-    pub(super) fn tick(&mut self, robot: &Robot, tick: &Tick<'_>) {
+    /// Returns whether scan or odometry cannot be used; without a command the robot brakes and does not stop.
+    pub(super) fn tick(&mut self, robot: &Robot, tick: &Tick<'_>) -> bool {
         let inputs = tick.inputs;
         let bad = [
             (
@@ -45,5 +46,7 @@ impl Input {
                 );
             }
         }
+        bad.iter()
+            .any(|(what, is_bad)| *is_bad && *what != "command")
     }
 }

@@ -1,6 +1,7 @@
 //! LATCH: stops hold until they may be released, and release never replays an old command.
 
 use haltline::decision::{Action, StopStatus};
+use haltline_robots::Robot;
 
 use super::{Ledger, Tick};
 use crate::drive::SetPoint;
@@ -16,6 +17,8 @@ pub(super) struct Latch {
     /// The last release of a latched stop: an older order is void.
     unlatched_us: Option<u64>,
     before: Option<SetPoint>,
+    /// When a protective stop last had a cause: its first tick, or one whose inputs called for it.
+    cause_us: u64,
 }
 
 impl Latch {
@@ -27,10 +30,12 @@ impl Latch {
             released_us: None,
             unlatched_us: None,
             before: None,
+            cause_us: 0,
         }
     }
 
-    pub(super) fn tick(&mut self, tick: &Tick<'_>) {
+    /// `caused`: this tick's inputs call for a protective stop.
+    pub(super) fn tick(&mut self, robot: &Robot, tick: &Tick<'_>, caused: bool) {
         let decision = tick.decision;
         self.ledger
             .judged(self.latched || self.status != StopStatus::Running);
@@ -52,6 +57,7 @@ impl Latch {
                 format!("the emergency {why}, but the kernel says {action:?}"),
             );
         }
+        self.check_release(robot, tick, caused);
         if self.status != StopStatus::Running && decision.status == StopStatus::Running {
             self.released_us = Some(tick.now_us);
             if self.status == StopStatus::Latched {
@@ -62,6 +68,29 @@ impl Latch {
         self.check_replay(tick);
         self.check_growth(tick);
         self.before = Some(decision.set_point);
+    }
+
+    /// LATCH-05: a protective stop holds until the robot rests and its cause has been gone for the clear time.
+    fn check_release(&mut self, robot: &Robot, tick: &Tick<'_>, caused: bool) {
+        let stops = tick.decision.status == StopStatus::Protective;
+        if caused || (stops && self.status != StopStatus::Protective) {
+            self.cause_us = self.cause_us.max(tick.now_us);
+        }
+        if self.status != StopStatus::Protective || tick.decision.status != StopStatus::Running {
+            return;
+        }
+        if !tick.rested {
+            let what = "a protective stop was released before the robot rested";
+            self.ledger.violated(tick.t_s, what.to_owned());
+        }
+        let gone_s = tick.now_us.saturating_sub(self.cause_us) as f64 * 1e-6;
+        let clear_s = robot.values.timing.clear_s;
+        if gone_s < clear_s - 1e-6 {
+            let what = format!(
+                "a protective stop was released {gone_s:.3} s after its last cause, {clear_s} s are the clear time"
+            );
+            self.ledger.violated(tick.t_s, what);
+        }
     }
 
     /// LATCH-06: after a release only newer commands move the robot.

@@ -36,7 +36,9 @@ impl Limit {
             self.rest_wanted = tick.decision.wants_rest;
         }
         self.ledger.judged(tick.decision.moves());
-        self.ledger.near(room(robot, set_point));
+        if tick.decision.moves() {
+            self.ledger.near(room(robot, set_point));
+        }
         for what in outside(robot, set_point) {
             self.ledger.violated(tick.t_s, what);
         }
@@ -82,14 +84,20 @@ impl Limit {
     }
 }
 
-/// How far a set point is inside the speed limits, m/s or rad/s.
+/// How far a set point is inside the limits of the directions in which it moves, m/s or rad/s.
 fn room(robot: &Robot, set_point: SetPoint) -> f64 {
     let limits = &robot.values.limits;
     let v = set_point.speed();
-    let linear = (limits.speed_forward_mps - v).min(v + limits.speed_reverse_mps);
+    let linear = match v {
+        v if v > 0.0 => limits.speed_forward_mps - v,
+        v if v < 0.0 => v + limits.speed_reverse_mps,
+        _ => f64::INFINITY,
+    };
     match set_point {
-        SetPoint::Twist { omega, .. } => linear.min(limits.angular_speed_radps - omega.abs()),
-        SetPoint::Arc { .. } => linear,
+        SetPoint::Twist { omega, .. } if omega != 0.0 => {
+            linear.min(limits.angular_speed_radps - omega.abs())
+        }
+        _ => linear,
     }
 }
 

@@ -9,6 +9,7 @@ mod fresh;
 mod input;
 mod latch;
 mod limit;
+mod sight;
 mod silent;
 mod usable;
 mod zone;
@@ -25,7 +26,7 @@ use crate::drive::SetPoint;
 use crate::math::Pose;
 use crate::result::{MonitorReport, Violation};
 use crate::world::World;
-pub use claim::{BUMPED, EXCUSED, FORGOTTEN, OUT_OF_SIGHT};
+pub use claim::{BUMPED, EXCUSED, FORGOTTEN, OUT_OF_SIGHT, UNSEEN, is_outside};
 use usable::Newest;
 
 /// A decision in SI units.
@@ -95,6 +96,19 @@ pub struct Touch {
     pub t_s: f64,
     /// Body.
     pub body: usize,
+    /// Pose of the robot.
+    pub pose: Pose,
+    /// Whether it would be one with the body as that stood at [`Monitors::settled_s`].
+    pub stood: bool,
+}
+
+/// What was made of a contact.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Judged {
+    /// Ids of the broken assumptions that could explain it.
+    pub assumptions: Vec<String>,
+    /// Why the claim does not speak of it, if it does not.
+    pub outside: Option<&'static str>,
 }
 
 /// Counts and complaints of one monitor.
@@ -134,8 +148,14 @@ impl Ledger {
 
     fn violated(&mut self, t_s: f64, what: String) {
         self.report.violation_count += 1;
-        if self.report.violations.len() < KEPT {
-            self.report.violations.push(Violation { t_s, what });
+        let kept = &mut self.report.violations;
+        if kept.len() < KEPT {
+            kept.push(Violation { t_s, what });
+        } else if !claim::is_outside(&what)
+            && let Some(place) = kept.iter_mut().find(|one| claim::is_outside(&one.what))
+        {
+            // What the claim does not speak of must not crowd out what it does.
+            *place = Violation { t_s, what };
         }
     }
 }
@@ -182,14 +202,16 @@ impl<'r> Monitors<'r> {
     pub fn tick(&mut self, mut tick: Tick<'_>) {
         let fresh_scans = self.newest.take_in(self.robot, tick.inputs, tick.now_us);
         tick.newest = self.newest.clone();
-        self.claim.tick(&tick, &fresh_scans);
+        self.claim.tick(self.robot, &tick, &fresh_scans);
         self.brake.tick(self.robot, &tick);
         self.limit.tick(self.robot, &tick);
-        self.zone.tick(self.robot, &tick, &fresh_scans);
         self.fresh.tick(self.robot, &tick);
-        self.silent.tick(self.robot, &tick);
-        self.latch.tick(&tick);
-        self.input.tick(self.robot, &tick);
+        let causes = [
+            self.zone.tick(self.robot, &tick, &fresh_scans),
+            self.silent.tick(self.robot, &tick),
+            self.input.tick(self.robot, &tick),
+        ];
+        self.latch.tick(self.robot, &tick, causes.contains(&true));
     }
 
     /// Hears before a tick how far each body is from the footprint, and how the robot stands.
@@ -197,9 +219,21 @@ impl<'r> Monitors<'r> {
         self.claim.stands(distances_m, standing);
     }
 
+    /// Hears which bodies stand where the operator vouched for a free place.
+    pub fn vouched(&mut self, bodies: &[usize]) {
+        self.claim.vouched(bodies);
+    }
+
+    /// A moment so long before the manoeuvre being executed was accepted that a body which stood somewhere then
+    /// made that place unknown, if it was not seen there: no tube may lead to it.
+    #[must_use]
+    pub fn settled_s(&self) -> Option<f64> {
+        self.claim.settled_s()
+    }
+
     /// Judges the first dynamics step at which a moving robot overlaps a body.
-    pub fn touch(&mut self, touch: Touch, broken: &[Broken]) {
-        self.claim.touch(touch, broken);
+    pub fn touch(&mut self, touch: Touch, broken: &[Broken]) -> Judged {
+        self.claim.touch(self.robot, touch, broken)
     }
 
     /// The accounts.

@@ -18,13 +18,12 @@ impl Silent {
         }
     }
 
-    pub(super) fn tick(&mut self, robot: &Robot, tick: &Tick<'_>) {
+    /// Returns whether the tick is late or a repetition.
+    pub(super) fn tick(&mut self, robot: &Robot, tick: &Tick<'_>) -> bool {
         let timing = &robot.values.timing;
         let patience_us = ((timing.period_s + timing.jitter_s) * 1e6).round() as u64;
         let expires_us = tick.decision.expires_us;
         let allowed_us = tick.now_us + patience_us;
-        self.ledger
-            .near((allowed_us as f64 - expires_us as f64) * 1e-6);
         if expires_us > allowed_us {
             self.ledger.violated(
                 tick.t_s,
@@ -48,5 +47,6 @@ impl Silent {
         }
         self.ledger.judged(late || tick.decision.moves());
         self.before_us = Some(tick.now_us);
+        late
     }
 }

@@ -18,6 +18,7 @@ const PERIOD_US: u64 = 40_000;
 struct Bench<'r> {
     monitors: Monitors<'r>,
     now_us: u64,
+    rested: bool,
 }
 
 fn world() -> World {
@@ -78,6 +79,7 @@ impl<'r> Bench<'r> {
         let mut bench = Self {
             monitors: Monitors::new(robot, &world()),
             now_us: 1_000_000,
+            rested: true,
         };
         bench.tick(decision(Action::EmergencyStop, 0.0), |_| {});
         bench.tick(decision(Action::Brake, 0.0), |inputs| {
@@ -100,7 +102,7 @@ impl<'r> Bench<'r> {
         }
         let t_s = self.now_us as f64 * 1e-6;
         let still = |_| Pose::default();
-        let place = (Pose::default(), true);
+        let place = (Pose::default(), self.rested);
         self.monitors.tick(Tick::new(
             (t_s, self.now_us),
             &inputs,
@@ -120,6 +122,16 @@ impl<'r> Bench<'r> {
     }
 }
 
+/// A contact with the only body that was not there before.
+fn touch(t_s: f64) -> Touch {
+    Touch {
+        t_s,
+        body: 0,
+        pose: Pose::default(),
+        stood: false,
+    }
+}
+
 #[test]
 fn good_ticks_are_not_objected_to() {
     let robot = robot();
@@ -133,12 +145,12 @@ fn good_ticks_are_not_objected_to() {
 #[test]
 fn claim_fires_for_a_known_body_and_for_unseen_space() {
     let robot = robot();
-    let touch = Touch { t_s: 2.0, body: 0 };
+    let touch = touch(2.0);
     let mut known = Bench::running(&robot);
-    known.monitors.touch(touch, &[]);
+    let _ = known.monitors.touch(touch, &[]);
     assert_eq!(known.fired(), ["CLAIM"]);
     let mut unseen = Monitors::new(&robot, &world());
-    unseen.touch(touch, &[]);
+    let _ = unseen.touch(touch, &[]);
     assert_eq!(unseen.finish()[0].violation_count, 1);
 }
 
@@ -153,7 +165,7 @@ fn claim_accepts_a_named_assumption_for_this_body_only() {
     };
     let fires = |broken: Broken| {
         let mut bench = Bench::running(&robot);
-        bench.monitors.touch(Touch { t_s: 2.0, body: 0 }, &[broken]);
+        let _ = bench.monitors.touch(touch(2.0), &[broken]);
         !bench.fired().is_empty()
     };
     assert!(!fires(excuse(None, 0.0)));
@@ -239,6 +251,7 @@ fn latch_fires_before_reset_on_replay_and_on_growth() {
     let mut unreset = Bench {
         monitors: Monitors::new(&robot, &world()),
         now_us: 1_000_000,
+        rested: true,
     };
     unreset.tick(decision(Action::Brake, 0.0), |_| {});
     assert_eq!(unreset.fired(), ["LATCH"], "nobody gave a reset");
@@ -275,9 +288,40 @@ fn latch_fires_before_reset_on_replay_and_on_growth() {
 }
 
 #[test]
+fn latch_fires_when_a_protective_stop_is_released_too_early() {
+    let robot = robot();
+    let released = |ticks: usize, rested: bool, spoil: fn(&mut TickInputs)| {
+        let mut bench = Bench::running(&robot);
+        for tick in 0..ticks {
+            bench.tick(decision(Action::ProtectiveStop, 0.0), |inputs| {
+                if tick == 8 {
+                    spoil(inputs);
+                }
+            });
+        }
+        bench.rested = rested;
+        bench.tick(decision(Action::Brake, 0.0), |_| {});
+        bench.fired()
+    };
+    // The clear time is half a second, a tick is 40 ms.
+    assert_eq!(released(13, true, |_| {}), Vec::<String>::new());
+    assert_eq!(released(12, true, |_| {}), ["LATCH"], "too early");
+    assert_eq!(released(13, false, |_| {}), ["LATCH"], "in motion");
+    let unusable: fn(&mut TickInputs) = |inputs| inputs.scans[0].ranges_m.truncate(100);
+    assert_eq!(
+        released(20, true, unusable),
+        ["LATCH"],
+        "the cause came back"
+    );
+    assert_eq!(released(21, true, unusable), Vec::<String>::new());
+}
+
+#[test]
 fn input_fires_when_the_unusable_is_passed_over() {
     let robot = robot();
-    let spoilers: [fn(&mut TickInputs); 4] = [
+    let spoilers: [fn(&mut TickInputs); 5] = [
+        // A run of 12 degrees, fewer than the part that may be invalid.
+        |inputs| inputs.scans[0].ranges_m[100..124].fill(f32::NAN),
         |inputs| inputs.scans[0].ranges_m.fill(f32::NAN),
         |inputs| inputs.scans[0].ranges_m.truncate(100),
         |inputs| {

@@ -62,7 +62,7 @@ fn raise(newest: &mut Option<u64>, stamp_us: u64, now_us: u64) {
     }
 }
 
-/// Whether a scan has the right size and no more invalid beams than allowed.
+/// Whether a scan has the right size and no more invalid beams, in all and side by side, than allowed.
 pub(super) fn scan_usable(robot: &Robot, scan: &RawScan) -> bool {
     let Some(scanner) = robot.values.scanners.get(scan.scanner) else {
         return false;
@@ -72,7 +72,10 @@ pub(super) fn scan_usable(robot: &Robot, scan: &RawScan) -> bool {
     }
     let invalid = |range: &&f32| beam_invalid(scanner, **range);
     let count = scan.ranges_m.iter().filter(invalid).count();
+    let runs = scan.ranges_m.split(|range| !beam_invalid(scanner, *range));
+    let widest = runs.map(<[f32]>::len).max().unwrap_or(0);
     count as f64 <= scanner.invalid_fraction_max * scan.ranges_m.len() as f64
+        && widest as f64 * scanner.increment_rad().abs() <= scanner.invalid_gap_max_rad + 1e-6
 }
 
 fn beam_invalid(scanner: &Scanner, range: f32) -> bool {

@@ -22,7 +22,8 @@ impl Zone {
         }
     }
 
-    pub(super) fn tick(&mut self, robot: &Robot, tick: &Tick<'_>, fresh_scans: &[usize]) {
+    /// Returns whether a return lies in the zone.
+    pub(super) fn tick(&mut self, robot: &Robot, tick: &Tick<'_>, fresh_scans: &[usize]) -> bool {
         let scans = fresh_scans
             .iter()
             .filter_map(|index| tick.inputs.scans.get(*index));
@@ -34,7 +35,7 @@ impl Zone {
         let (Some((distance, [x, y])), true) =
             (nearest, tick.decision.action < Action::ProtectiveStop)
         else {
-            return;
+            return inside.is_some();
         };
         self.ledger.near(distance);
         if inside.is_some() && tick.decision.action < Action::ProtectiveStop {
@@ -46,6 +47,7 @@ impl Zone {
                 ),
             );
         }
+        inside.is_some()
     }
 }
 

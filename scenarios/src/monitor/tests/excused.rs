@@ -11,7 +11,7 @@ fn words(robot: &Robot, moves: bool, before: &[(f64, Standing)]) -> String {
     for (distance_m, standing) in before {
         bench.monitors.stands(&[*distance_m], *standing);
     }
-    bench.monitors.touch(Touch { t_s: 1.2, body: 0 }, &[]);
+    let _ = bench.monitors.touch(touch(1.2), &[]);
     bench.monitors.finish()[0].violations[0].what.clone()
 }
 
@@ -31,6 +31,10 @@ fn claim_says_where_a_robot_rested_beside_the_body() {
             "it was left behind",
         ),
         (&[(0.01, Still)], "it never rested there"),
+        (
+            &[(0.05, Rested), (0.0, Moving)],
+            "it came nearer by more than the drive may be off",
+        ),
     ] {
         assert!(!words(&still, false, before).contains(EXCUSED), "{why}");
     }
@@ -58,22 +62,83 @@ fn claim_says_that_a_body_bumped_into_the_standing_robot() {
 fn claim_says_that_a_moving_body_had_gone_out_of_sight() {
     let mut robot = robot();
     robot.values.obstacle_speed_mps = 1.0;
-    let words = |moves: bool, seen_last: bool| {
+    let words = |moves: bool, now: Option<f32>| {
         let mut bench = Bench::running(&robot);
         bench.monitors.claim = claim::Claim::new(&robot, vec!["box".to_owned()], vec![moves]);
         bench.tick(decision(Action::Pass, 0.01), |_| {});
         bench.tick(decision(Action::Pass, 0.01), |inputs| {
-            if !seen_last {
+            if let Some(range_m) = now {
                 inputs.scans[0].bodies.fill(None);
+                inputs.scans[0].ranges_m.fill(range_m);
             }
         });
-        bench.monitors.touch(Touch { t_s: 1.2, body: 0 }, &[]);
+        let _ = bench.monitors.touch(touch(1.2), &[]);
         bench.monitors.finish()[0].violations[0].what.clone()
     };
-    assert!(words(true, false).contains(OUT_OF_SIGHT));
-    assert!(!words(true, true).contains(OUT_OF_SIGHT), "it was in sight");
-    assert!(
-        !words(false, false).contains(OUT_OF_SIGHT),
-        "what stands is remembered"
+    // It was returned 5 m away, all around.
+    assert!(words(true, Some(6.0)).contains(OUT_OF_SIGHT));
+    for (moves, now, why) in [
+        (true, None, "it was in sight"),
+        (true, Some(4.0), "nobody looked past the place it was in"),
+        (false, Some(6.0), "what stands is remembered"),
+    ] {
+        assert!(!words(moves, now).contains(OUT_OF_SIGHT), "{why}");
+    }
+}
+
+/// A touch with a body that can move and that no beam had returned.
+fn unseen(stood: bool, standing: Standing) -> (Judged, u64) {
+    let mut robot = robot();
+    robot.values.obstacle_speed_mps = 1.0;
+    let mut bench = Bench::running(&robot);
+    bench.monitors.claim = claim::Claim::new(&robot, vec!["box".to_owned()], vec![true]);
+    bench.tick(decision(Action::Pass, 0.01), |inputs| {
+        inputs.scans[0].bodies.fill(None);
+    });
+    bench.monitors.stands(&[0.0], standing);
+    let touch = Touch {
+        stood,
+        ..touch(1.2)
+    };
+    let judged = bench.monitors.touch(touch, &[]);
+    (judged, bench.monitors.finish()[0].violation_count)
+}
+
+#[test]
+fn claim_fires_for_unseen_bodies_that_stood_where_the_robot_drove() {
+    let (came, count) = unseen(false, Moving);
+    assert_eq!(
+        (came.outside, count),
+        (Some(UNSEEN), 0),
+        "unseen space does not attack"
     );
+    let (stood, count) = unseen(true, Moving);
+    assert_eq!((stood.outside, count), (None, 1), "its place was unknown");
+    let (bumped, count) = unseen(true, Still);
+    assert_eq!(
+        (bumped.outside, count),
+        (Some(UNSEEN), 0),
+        "it came to the standing robot"
+    );
+}
+
+#[test]
+fn the_operators_word_explains_nothing_that_was_seen_since() {
+    let robot = robot();
+    let word = Broken {
+        id: crate::assumption::START,
+        what: String::new(),
+        body: Some(0),
+        from_s: 0.0,
+    };
+    // Before the front edge (0.527 m before the centre stands the scanner), or elsewhere.
+    for (range_m, explained) in [(0.1_f32, false), (5.0, true)] {
+        let mut bench = Bench::running(&robot);
+        bench.monitors.vouched(&[0]);
+        bench.tick(decision(Action::Pass, 0.01), |inputs| {
+            inputs.scans[0].ranges_m[270] = range_m;
+        });
+        let judged = bench.monitors.touch(touch(1.2), &[word.clone()]);
+        assert_eq!(!judged.assumptions.is_empty(), explained, "{range_m}");
+    }
 }
