@@ -112,19 +112,16 @@ impl Sight {
             return false;
         };
         let mut returns = seen.returns_m.iter().take(known.returns);
-        returns.any(|place| beside(robot, pose.apply_inverse(*place)))
+        returns.any(|place| covers(robot, pose.apply_inverse(*place)))
     }
 }
 
-/// Nearer to a point of the footprint than this is the part that is touched, metres.
-const PART_M: f64 = 0.1;
-
-/// Whether a point in the body frame is in the footprint or near its edge.
-fn beside(robot: &Robot, [x, y]: [f64; 2]) -> bool {
+/// Whether a point in the body frame is in the footprint.
+fn covers(robot: &Robot, [x, y]: [f64; 2]) -> bool {
     let outline = &robot.values.footprint;
     let far_x = (x - outline.front_m).max(-outline.rear_m - x).max(0.0);
     let far_y = (y - outline.left_m).max(-outline.right_m - y).max(0.0);
-    libm::hypot(far_x, far_y) < PART_M
+    far_x <= 0.0 && far_y <= 0.0
 }
 
 /// A scan and where it was taken.

@@ -18,7 +18,7 @@ const fn fault(
 }
 
 /// Chosen by hand.
-pub(super) const CHOSEN: [Fault; 52] = [
+pub(super) const CHOSEN: [Fault; 58] = [
     fault(
         "geometry/rect.rs",
         "point.x <= self.front",
@@ -318,6 +318,43 @@ pub(super) const CHOSEN: [Fault; 52] = [
         "self.stopped.is_none_or(stood)",
         "(self.stopped.is_none_or(stood) || true)",
         "test -p haltline-spec --release --test door",
+    ),
+    // Small changes of shard 1/35 (`mutants`) that no test had noticed.
+    fault(
+        "checked.rs",
+        "if beams < 2\n",
+        "if beams <= 2\n",
+        "test -p haltline-spec --release --test configurations",
+    ),
+    fault(
+        "guard/mod.rs",
+        "    let tube = Tube::new(parameters, hull, reaction_us).ok()?;\n    let nearest",
+        "    return None;\n    let tube = Tube::new(parameters, hull, reaction_us).ok()?;\n    let nearest",
+        "test -p haltline-spec --release --test memory beside",
+    ),
+    fault(
+        "odometry.rs",
+        "(later.stamp == time).then",
+        "(later.stamp != time).then",
+        "test -p haltline --release --test edges",
+    ),
+    fault(
+        "geometry/frame.rs",
+        "offset.x.unsigned_abs() > VIEW_MM.unsigned_abs()",
+        "offset.x.unsigned_abs() == VIEW_MM.unsigned_abs()",
+        "test -p haltline --release --test edges",
+    ),
+    fault(
+        "guard/plan.rs",
+        "            constant_spread: mul_micro_up(speed, latest),\n",
+        "",
+        "test -p haltline --release --test edges",
+    ),
+    fault(
+        "guard/seen.rs",
+        "(FOLLOW_CELLS + 1) * CELL_MM",
+        "(FOLLOW_CELLS - 1) * CELL_MM",
+        "test -p haltline --release --test edges",
     ),
     // Two of these again: the attacker must find them without being told where to look.
     fault(

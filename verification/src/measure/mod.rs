@@ -40,9 +40,26 @@ const CORE: [&str; 18] = [
 ];
 
 /// Tests that both measurements run: those of the kernel, and those against the oracle but for the long campaign.
-pub const TESTS: [&str; 15] = [
-    "--lib", "--test", "door", "--test", "guard", "--test", "memory", "--test", "shield", "--test",
-    "stops", "--test", "unknown", "--test", "zone",
+pub const TESTS: [&str; 19] = [
+    "--lib",
+    "--test",
+    "configurations",
+    "--test",
+    "door",
+    "--test",
+    "edges",
+    "--test",
+    "guard",
+    "--test",
+    "memory",
+    "--test",
+    "shield",
+    "--test",
+    "stops",
+    "--test",
+    "unknown",
+    "--test",
+    "zone",
 ];
 
 /// Everything that was measured.

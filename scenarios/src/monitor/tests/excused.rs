@@ -131,8 +131,8 @@ fn the_operators_word_explains_nothing_that_was_seen_since() {
         body: Some(0),
         from_s: 0.0,
     };
-    // Before the front edge (0.527 m before the centre stands the scanner), or elsewhere.
-    for (range_m, explained) in [(0.1_f32, false), (5.0, true)] {
+    // Returned from where the footprint is now, behind its front edge, or from elsewhere.
+    for (range_m, explained) in [(0.05_f32, false), (5.0, true)] {
         let mut bench = Bench::running(&robot);
         bench.monitors.vouched(&[0]);
         bench.tick(decision(Action::Pass, 0.01), |inputs| {
