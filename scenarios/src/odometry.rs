@@ -85,7 +85,8 @@ impl Odometer {
         self.curvature = self.curvature.map(|_| curvature);
     }
 
-    /// Takes in a displacement in the robot's frame that the wheels know nothing of.
+    /// Takes in a displacement in the robot's frame that the wheels know nothing of. It shows in the pose all the same: what
+    /// odometry never sees of a skid is drift, not A-TRACKING.
     pub fn slide(&mut self, slid: Pose) {
         self.pose = self.pose.then(slid);
     }
