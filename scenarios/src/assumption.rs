@@ -40,6 +40,12 @@ impl Broken {
         self.body.is_none_or(|only| only == body) && t_s >= self.from_s
     }
 
+    /// Whether it is broken at `t_s`, and not by a single body.
+    #[must_use]
+    pub fn concerns_all(&self, t_s: f64) -> bool {
+        self.body.is_none() && t_s >= self.from_s
+    }
+
     /// As it stands in results.
     #[must_use]
     pub fn record(&self) -> BrokenAssumption {

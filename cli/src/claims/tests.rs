@@ -179,6 +179,8 @@ fn an_empty_suite_claims_nothing() {
 fn a_naked_twin_that_touches_is_counted() {
     let mut naked = run(vec![]);
     naked.contacts.push(Contact {
+        assumptions: Vec::new(),
+        outside: None,
         t_s: 0.5,
         body: "pole".into(),
         robot_moving: true,

@@ -101,6 +101,8 @@ fn run(guarded: bool, stop_at: f64) -> RunResult {
             vec![]
         } else {
             vec![Contact {
+                assumptions: Vec::new(),
+                outside: None,
                 t_s: 4.0,
                 body: "<ball>".into(),
                 robot_moving: true,

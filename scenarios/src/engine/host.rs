@@ -3,8 +3,8 @@
 use haltline::decision::{Decision, StopStatus};
 use haltline_robots::Robot;
 
-use super::Engine;
 use super::operator::{Operator, Route};
+use super::{Engine, STEP_US};
 use crate::controller::{Controller, TickInputs, set_point, tick};
 use crate::drive::SetPoint;
 use crate::faults::Faults;
@@ -14,6 +14,9 @@ use crate::monitor::{DecisionRecord, Judged, Monitors, Standing, Tick, Touch};
 use crate::navigation::NavigationRecord;
 use crate::proposer::{Driver, RawCommand};
 use crate::result::RunResult;
+
+/// When a speed falls to just the rest threshold is a matter of rounding and of whole dynamics steps, seconds.
+const THRESHOLD_S: f64 = 2.0 * STEP_US as f64 * 1e-6;
 
 /// State of the host.
 pub(super) struct Host<'a> {
@@ -165,13 +168,17 @@ impl<'a> Host<'a> {
             (false, true) => Standing::Rested,
         };
         self.monitors.stands(&engine.distances(t_us), standing);
-        self.monitors.tick(Tick::new(
+        let nearly = engine.rested(t_us, self.robot.values.timing.rest_s - THRESHOLD_S);
+        let mut tick = Tick::new(
             (seconds(t_us), now_us),
             inputs,
             &record,
             &pose_at,
-            (pose, rested),
-        ));
+            (pose, nearly),
+        );
+        let mut broken = engine.broken.iter();
+        tick.assumptions_hold = !broken.any(|one| one.concerns_all(seconds(t_us)));
+        self.monitors.tick(tick);
         let before = self.decision.map(|d| d.status);
         if before != Some(StopStatus::Running)
             && record.status == StopStatus::Running

@@ -1,5 +1,5 @@
 //! CLAIM: the robot never touches, while it moves, a body that it knew of when it accepted the
-//! manoeuvre being executed.
+//! manoeuvre being executed; and it brakes at once for a new return on its way.
 //!
 //! Stricter than the claim: a body counts as known once a beam has returned it, whether or not the
 //! kernel's memory was allowed to forget it since; the words say which ([`FORGOTTEN`]). Whatever
@@ -10,6 +10,7 @@ use haltline::decision::Action;
 
 use haltline_robots::{Robot, Scanner};
 
+use super::news::News;
 use super::sight::{Known, Sight};
 use super::{Judged, Ledger, Standing, Tick, Touch};
 use crate::assumption::{Broken, START};
@@ -62,6 +63,7 @@ pub(super) struct Claim {
     names: Vec<String>,
     moves: Vec<bool>,
     sight: Sight,
+    news: News,
     /// When the manoeuvre being executed was accepted, and what was known of each body then.
     accepted: Option<(f64, Vec<Known>)>,
     /// How long memory must hold what moves.
@@ -86,6 +88,7 @@ impl Claim {
         Self {
             ledger: Ledger::new("CLAIM"),
             sight: Sight::new(&moves, values.scanners.len()),
+            news: News::new(values.scanners.len()),
             accepted: None,
             memory_s: values.memory.age_max_s.min(nowhere_s),
             beside_m: if values.obstacle_speed_mps > 0.0 {
@@ -106,6 +109,9 @@ impl Claim {
         scans.for_each(|scan: &RawScan| self.sight.take(robot, tick, scan));
         if tick.decision.action < Action::Brake {
             self.accepted = Some((tick.t_s, self.sight.known(tick.t_s)));
+        }
+        if let Some(what) = self.news.tick(robot, tick, fresh_scans) {
+            self.ledger.violated(tick.t_s, what);
         }
         self.ledger.judged(tick.decision.moves());
     }

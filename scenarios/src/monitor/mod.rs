@@ -9,6 +9,7 @@ mod fresh;
 mod input;
 mod latch;
 mod limit;
+mod news;
 mod sight;
 mod silent;
 mod usable;
@@ -72,8 +73,10 @@ pub struct Tick<'a> {
     pub pose: Pose,
     /// True pose at a time of the simulator's clock.
     pub pose_at: &'a dyn Fn(u64) -> Pose,
-    /// Whether the robot has truly been at rest for its rest time.
+    /// Whether the robot has truly been at rest for its rest time, less two dynamics steps.
     pub rested: bool,
+    /// Whether no assumption is broken that concerns the robot itself.
+    pub assumptions_hold: bool,
     /// Newest usable stamps, this tick's inputs included.
     newest: Newest,
 }
@@ -270,7 +273,17 @@ impl<'a> Tick<'a> {
             pose,
             pose_at,
             rested,
+            assumptions_hold: true,
             newest: Newest::default(),
         }
     }
+}
+
+/// Whether a point in the body frame lies in the footprint, farther than `border_m` from its outline.
+fn covers(robot: &Robot, [x, y]: [f64; 2], border_m: f64) -> bool {
+    let outline = &robot.values.footprint;
+    x <= outline.front_m - border_m
+        && x >= border_m - outline.rear_m
+        && y <= outline.left_m - border_m
+        && y >= border_m - outline.right_m
 }

@@ -2,8 +2,8 @@
 
 use haltline_robots::{Robot, Scanner};
 
-use super::Tick;
 use super::usable::{returned, too_near};
+use super::{Tick, covers};
 use crate::math::{Pose, microseconds, seconds};
 use crate::sensor::{RawScan, beam_time_us};
 
@@ -112,16 +112,8 @@ impl Sight {
             return false;
         };
         let mut returns = seen.returns_m.iter().take(known.returns);
-        returns.any(|place| covers(robot, pose.apply_inverse(*place)))
+        returns.any(|place| covers(robot, pose.apply_inverse(*place), 0.0))
     }
-}
-
-/// Whether a point in the body frame is in the footprint.
-fn covers(robot: &Robot, [x, y]: [f64; 2]) -> bool {
-    let outline = &robot.values.footprint;
-    let far_x = (x - outline.front_m).max(-outline.rear_m - x).max(0.0);
-    let far_y = (y - outline.left_m).max(-outline.right_m - y).max(0.0);
-    far_x <= 0.0 && far_y <= 0.0
 }
 
 /// A scan and where it was taken.

@@ -84,7 +84,7 @@ fn nearest(robot: &Robot, tick: &Tick<'_>, scan: &RawScan) -> Option<(f64, [f64;
     places.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-fn masked(scanner: &Scanner, [x, y]: [f64; 2]) -> bool {
+pub(super) fn masked(scanner: &Scanner, [x, y]: [f64; 2]) -> bool {
     scanner
         .masks
         .iter()

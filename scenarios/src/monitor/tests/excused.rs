@@ -122,6 +122,35 @@ fn claim_fires_for_unseen_bodies_that_stood_where_the_robot_drove() {
     );
 }
 
+/// The robot goes on at half a metre a second: for 0.14 s, then another quarter of a metre.
+#[test]
+fn claim_fires_when_a_new_return_on_the_way_is_passed_over() {
+    let robot = robot();
+    let answered = |action: Action, bearing: usize, range_m: f32, covered: bool| {
+        let mut bench = Bench::running(&robot);
+        bench.tick(decision(action, 0.5), |inputs| {
+            inputs.scans[0].ranges_m[bearing] = range_m;
+            if !covered {
+                // Odometry that ends before the scan does.
+                inputs.odometry = None;
+            }
+        });
+        let claim = &bench.monitors.finish()[0];
+        claim.violation_count > 0
+    };
+    assert!(answered(Action::Pass, 270, 0.25, true), "ahead");
+    assert!(!answered(Action::Brake, 270, 0.25, true), "it braked");
+    assert!(
+        !answered(Action::Pass, 270, 1.0, true),
+        "beyond where it can stop"
+    );
+    assert!(!answered(Action::Pass, 450, 0.6, true), "beside it");
+    assert!(
+        !answered(Action::Pass, 270, 0.25, false),
+        "not to be placed yet"
+    );
+}
+
 #[test]
 fn the_operators_word_explains_nothing_that_was_seen_since() {
     let robot = robot();
@@ -138,7 +167,9 @@ fn the_operators_word_explains_nothing_that_was_seen_since() {
         bench.tick(decision(Action::Pass, 0.01), |inputs| {
             inputs.scans[0].ranges_m[270] = range_m;
         });
-        let judged = bench.monitors.touch(touch(1.2), &[word.clone()]);
+        let judged = bench
+            .monitors
+            .touch(touch(1.2), std::slice::from_ref(&word));
         assert_eq!(!judged.assumptions.is_empty(), explained, "{range_m}");
     }
 }
