@@ -83,7 +83,7 @@ fn finish(record: &Record, out: &Path) -> Result<Exit, Failure> {
     write_whole(&path, text.as_bytes())?;
     words::summary(record, out);
     say!("wrote {}", path.display());
-    if record.moving == 0 {
+    if record.moving == 0 && record.violations.is_empty() && record.broken.is_empty() {
         return Err(Failure::input(
             "no motion was ever accepted, so nothing was tried: look at --set and --told, or at the robot file with \
              `haltline certify`",

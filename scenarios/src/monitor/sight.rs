@@ -2,7 +2,7 @@
 
 use haltline_robots::{Robot, Scanner};
 
-use super::usable::{returned, too_near};
+use super::usable::{beam_invalid, returned, too_near};
 use super::{Tick, covers};
 use crate::math::{Pose, microseconds, seconds};
 use crate::sensor::{RawScan, beam_time_us};
@@ -142,7 +142,7 @@ impl View<'_> {
         })
     }
 
-    /// Whether a beam went through a place and came back from beyond it, or from nowhere.
+    /// Whether a beam went through a place and came back from beyond it, or validly from nowhere.
     fn passes(&self, place: [f64; 2]) -> bool {
         let count = self.scan.ranges_m.len();
         // Which beam it is depends on when that was measured: begin with the middle one.
@@ -165,7 +165,7 @@ impl View<'_> {
         let [ahead, _] = self.along(beam).apply_inverse(place);
         match returned(self.scanner, *range) {
             Some(range_m) => range_m > ahead,
-            None => true,
+            None => !beam_invalid(self.scanner, *range) && ahead < self.scanner.no_return_clear_m,
         }
     }
 }

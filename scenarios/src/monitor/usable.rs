@@ -78,7 +78,7 @@ pub(super) fn scan_usable(robot: &Robot, scan: &RawScan) -> bool {
         && widest as f64 * scanner.increment_rad().abs() <= scanner.invalid_gap_max_rad + 1e-6
 }
 
-fn beam_invalid(scanner: &Scanner, range: f32) -> bool {
+pub(super) fn beam_invalid(scanner: &Scanner, range: f32) -> bool {
     match scanner.encoding {
         Encoding::Rep117 if range.is_infinite() => false,
         Encoding::ZeroIsInvalid if range == 0.0 => true,
