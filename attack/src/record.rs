@@ -74,8 +74,6 @@ pub struct Find {
     pub words: String,
     /// Robustness of the run.
     pub robustness: f64,
-    /// Whether an assumption was broken on purpose; else a claim is violated.
-    pub breaks: bool,
     /// Times what is assumed, where an assumption is broken that has a size.
     pub severity: Option<f64>,
     /// File beside `attack.json`.
@@ -116,9 +114,10 @@ impl Record {
         }
     }
 
-    /// Takes in a find; of broken assumptions only the least break is kept. Says whether it was kept.
-    pub fn find(&mut self, find: Find) -> bool {
-        if !find.breaks {
+    /// Takes in a find: a violated claim, or an assumption broken on purpose, of which only the least break is kept. Says
+    /// whether it was kept.
+    pub fn find(&mut self, find: Find, breaks: bool) -> bool {
+        if !breaks {
             self.violations.push(find);
             return true;
         }
@@ -157,12 +156,11 @@ impl Record {
         self.naked_touched = self.naked_touched.saturating_add(other.naked_touched);
         self.worst_robustness = least(self.worst_robustness, other.worst_robustness);
         self.nearer(&other.margins);
-        for find in other
-            .violations
-            .into_iter()
-            .chain(other.broken.into_values())
-        {
-            self.find(find);
+        for find in other.violations {
+            self.find(find, false);
+        }
+        for find in other.broken.into_values() {
+            self.find(find, true);
         }
         self.violations.sort_by_key(|find| find.search);
         Ok(())

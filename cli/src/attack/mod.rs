@@ -125,12 +125,11 @@ fn keep(
         what: what.clone(),
         words: words.clone(),
         robustness: find.trial.robustness,
-        breaks,
         severity: find.severity,
         file: file.clone(),
         trace_sha256: sha256(find.trial.trace.as_bytes()),
     };
-    if record.find(entry) {
+    if record.find(entry, breaks) {
         let path = out.join(&file);
         let command = format!("haltline run {}{replay}", path.display());
         write_file(&path, find.file(&command).as_bytes())?;
